@@ -103,7 +103,7 @@ function cellFor(diagonal: number): number {
   return 10 ** Math.floor(Math.log10(diagonal * 1.5));
 }
 
-/** Returns TF's Marker Scale with which axes can be told from the links: `ModelSize.marker_scale` of the server. */
+/** Returns TF's Marker Scale with which axes and links can be distinguished: `ModelSize.marker_scale` of the server. */
 function markerScaleFor(diagonal: number, spacing: number): number {
   const axis = Math.min(Math.max(spacing / 2, diagonal / 40), diagonal / 10);
   return Number((axis / AXIS).toPrecision(2));

@@ -9,7 +9,7 @@ export interface ComparedRobot {
   marks: Record<string, Mark>;
 }
 
-/** A place in a text, 1-based: `path` for readers, and the file for the Source panel. */
+/** A position in a source text, 1-based: as text for users, and the file for the Source panel. */
 export interface ComparedPlace {
   text: string;
   file: string;

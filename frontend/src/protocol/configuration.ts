@@ -8,7 +8,7 @@ export type PropertyValue = boolean | number | string | null;
 
 export type RowDetails = "frame" | "link" | "joint" | "effort";
 
-/** The topics offered for a row. */
+/** The topics offered for a row: those with one of the types whose names contain one of the words. */
 export interface TopicOffer {
   messages: string[];
   words: string[];
@@ -38,7 +38,7 @@ export interface StatusRow {
   text: string;
 }
 
-/** A 1-based place in a source file, with the macro calls and includes that lead to it. */
+/** A 1-based position in a source file, with the macro calls and includes that lead to it. */
 export interface Place {
   file: string;
   line: number;
@@ -46,7 +46,7 @@ export interface Place {
   trail: string[];
 }
 
-/** A display of the Displays panel. `cls` is RViz's class, such as ``rviz_default_plugins/Grid``. */
+/** A display of the Displays panel. */
 export interface Display {
   id: string;
   cls: string;
@@ -69,14 +69,14 @@ export interface Tree {
   type: "tree";
 }
 
-/** All property rows of one display, sent again when they change. */
+/** All property rows of one display, sent when rows appear or disappear. */
 export interface DisplayProperties {
   display: string;
   properties: Property[];
   type: "display_properties";
 }
 
-/** A new value, set by any page or by the server. */
+/** A new value of a property, set by any page or by the server. */
 export interface PropertyChanged {
   id: string;
   value: PropertyValue;
@@ -92,7 +92,7 @@ export interface DisplayStatus {
   type: "display_status";
 }
 
-/** The user edited a property. */
+/** A property value that the user has entered. */
 export interface SetProperty {
   id: string;
   value: PropertyValue;
@@ -121,13 +121,13 @@ export interface Configuration {
   type: "configuration";
 }
 
-/** A class of displays that can be added, and the types of the topics that it shows. */
+/** A display class that can be added, and the message types that it shows. */
 export interface DisplayClass {
   cls: string;
   messages: string[];
 }
 
-/** A topic of the graph, its type, and the classes of displays that can show it, possibly none. */
+/** A topic of the graph, its message type, and the display classes that can show it, possibly none. */
 export interface TopicChoice {
   topic: string;
   message: string;
@@ -150,20 +150,20 @@ export interface Folder {
   type: "folder";
 }
 
-/** The file's text as it would be saved, and a name; response to `AskConfigurationText`. */
+/** The text of the configuration as it would be saved, and a file name for it. */
 export interface ConfigurationText {
   name: string;
   text: string;
   type: "configuration_text";
 }
 
-/** A notice that the configuration was saved. */
+/** The notice that the configuration was saved to a path. */
 export interface ConfigurationSaved {
   path: string;
   type: "configuration_saved";
 }
 
-/** The rejection of a page's request. */
+/** The rejection of a page's request, with the reason. */
 export interface ConfigurationRefused {
   message: string;
   question: Question | null;
@@ -171,7 +171,7 @@ export interface ConfigurationRefused {
   type: "configuration_refused";
 }
 
-/** Add an enabled display of a class, optionally to a group, and optionally showing a topic. */
+/** A request to add an enabled display of a class, optionally to a group and for a topic. */
 export interface AddDisplay {
   cls: string;
   name: string;
@@ -180,26 +180,26 @@ export interface AddDisplay {
   type: "add_display";
 }
 
-/** Add a copy after each of these displays. */
+/** A request to insert a copy of each of these displays after the original. */
 export interface DuplicateDisplays {
   displays: string[];
   type: "duplicate_displays";
 }
 
-/** Rename a display. */
+/** A request to rename a display. */
 export interface RenameDisplay {
   display: string;
   name: string;
   type: "rename_display";
 }
 
-/** Remove displays with their contents. */
+/** A request to remove displays with their contents. */
 export interface RemoveDisplays {
   displays: string[];
   type: "remove_displays";
 }
 
-/** Move displays into a group, before one of its displays. */
+/** A request to move displays into a group, before one of its displays. */
 export interface MoveDisplays {
   displays: string[];
   group: string | null;
@@ -207,48 +207,48 @@ export interface MoveDisplays {
   type: "move_displays";
 }
 
-/** Put displays into a new group at the position of the first of them. */
+/** A request to move displays into a new group, at the position of the first of them. */
 export interface GroupDisplays {
   displays: string[];
   name: string;
   type: "group_displays";
 }
 
-/** Undo the last edit of any page. */
+/** A request to undo the last edit that any page made to the configuration. */
 export interface Undo {
   type: "undo";
 }
 
-/** Redo the edit that was last undone. */
+/** A request to redo the edit that was last undone. */
 export interface Redo {
   type: "redo";
 }
 
-/** Ask for the classes of displays that can be added, the topics, and the displays that show them. */
+/** A request for `DisplayChoices`: the classes that can be added, and the topics that they can show. */
 export interface AskDisplayChoices {
   type: "ask_display_choices";
 }
 
-/** Ask for the contents of a folder of the server; None for the folder of the open file. */
+/** A request for the contents of a folder of the server; None for the folder of the open file. */
 export interface AskFolder {
   path: string | null;
   type: "ask_folder";
 }
 
-/** Open RViz's default configuration; `discard` allows losing unsaved edits. */
+/** A request to open RViz's default configuration. */
 export interface NewConfiguration {
   discard: boolean;
   type: "new_configuration";
 }
 
-/** Open a file on the server; `discard` allows losing unsaved edits. */
+/** A request to open a file on the server. */
 export interface OpenConfiguration {
   path: string;
   discard: boolean;
   type: "open_configuration";
 }
 
-/** Open a file from the browser's machine, given its name and text. */
+/** A request to open a file from the browser's machine, with its name and text. */
 export interface LoadConfiguration {
   name: string;
   text: string;
@@ -256,19 +256,19 @@ export interface LoadConfiguration {
   type: "load_configuration";
 }
 
-/** Open the file again and discard the edits. */
+/** A request to open the current file again and discard the edits. */
 export interface RevertConfiguration {
   type: "revert_configuration";
 }
 
-/** Save to the current or another file on the server, which becomes the configuration's file. */
+/** A request to save to a file on the server, which becomes the configuration's file. */
 export interface SaveConfiguration {
   path: string | null;
   replace: boolean;
   type: "save_configuration";
 }
 
-/** Ask for the text of the file as it would be saved now, to store it on the browser's machine. */
+/** A request for the text of the configuration, to store it on the browser's machine. */
 export interface AskConfigurationText {
   type: "ask_configuration_text";
 }
@@ -282,7 +282,7 @@ export type PanelName =
   | "transformation"
   | "navigation";
 
-/** The panels in the configuration. */
+/** The open panels of a configuration. */
 export interface Panels {
   opened: number;
   origin: string;
@@ -290,7 +290,7 @@ export interface Panels {
   type: "panels";
 }
 
-/** The user opened or closed a panel; the file stores the list of open panels. */
+/** The panels that are open after the user has opened or closed one; the file stores them. */
 export interface ShowPanels {
   shown: PanelName[];
   type: "show_panels";

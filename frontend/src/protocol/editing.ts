@@ -17,7 +17,7 @@ export interface EditablePart {
   line: number;
 }
 
-/** The editable parts of a display's link, the parent joint first. */
+/** The editable parts of a display's link, beginning with the parent joint. */
 export interface EditableParts {
   display: string;
   link: string;
@@ -32,7 +32,7 @@ export interface EditedFile {
   diff: string[];
 }
 
-/** The outcome of an edit, or the reason why it is rejected; `also` lists further changes. */
+/** The text changes of an edit, or the reason why the edit is rejected. */
 export interface EditPreview {
   number: number;
   files: EditedFile[];
@@ -41,7 +41,7 @@ export interface EditPreview {
   type: "edit_preview";
 }
 
-/** The outcome of writing files for an edit or an undo. */
+/** The files that were written for an edit or an undo. */
 export interface EditWritten {
   files: string[];
   refusal: DiagnosticItem | null;
@@ -55,14 +55,14 @@ export interface EditHistory {
   type: "edit_history";
 }
 
-/** The user selects a link of a display for editing. */
+/** A request for the editable parts of a link, which the user has selected. */
 export interface AskEditableParts {
   display: string;
   link: string;
   type: "ask_editable_parts";
 }
 
-/** The user moves or rotates a part; None for a value that does not change. */
+/** A request to preview an edit, which moves or rotates a part. */
 export interface PreviewEdit {
   number: number;
   display: string;
@@ -75,18 +75,18 @@ export interface PreviewEdit {
   type: "preview_edit";
 }
 
-/** The user applies the previewed edit with this number. */
+/** A request to write the previewed edit with this number to the files. */
 export interface ApplyEdit {
   number: number;
   type: "apply_edit";
 }
 
-/** Undo the last edit written to the files. */
+/** A request to undo the last edit that was written to the files. */
 export interface UndoEdit {
   type: "undo_edit";
 }
 
-/** Redo the edit that was last undone. */
+/** A request to redo the edit that was last undone. */
 export interface RedoEdit {
   type: "redo_edit";
 }

@@ -2,7 +2,7 @@
 
 import type { View } from "./views-and-tools";
 
-/** The user exports the scene as a file; `view` is the page's camera. */
+/** A request to export the scene as a file; `view` is the page's view. */
 export interface AskExport {
   format: "html" | "glb";
   view: View;

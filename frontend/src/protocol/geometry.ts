@@ -6,27 +6,27 @@ export interface PointMarks {
   kind: "point_marks";
 }
 
-/** Pose, PoseArray, PoseWithCovariance, Odometry and Path: poses in the frame of the content. */
+/** Poses of Pose, PoseArray, PoseWithCovariance, Odometry and Path, in the frame of the content. */
 export interface PoseMarks {
   poses: Float32Array;
   covariances: Float32Array;
   kind: "pose_marks";
 }
 
-/** ParticleCloud: poses as in `PoseMarks`, and the weight of each, shape (N,). */
+/** The particles of ParticleCloud: poses as in `PoseMarks`, and the weight of each, shape (N,). */
 export interface ParticleMarks {
   poses: Float32Array;
   weights: Float32Array;
   kind: "particle_marks";
 }
 
-/** Polygon: its corners in the frame of the content, shape (N, 3). */
+/** The corners of Polygon in the frame of the content, metres, shape (N, 3). */
 export interface PolygonLine {
   points: Float32Array;
   kind: "polygon_line";
 }
 
-/** GridMap: the centres of the cells in the frame of the content, row by row. */
+/** The surface of GridMap: the centres of the cells in the frame of the content, row by row. */
 export interface GridSurface {
   rows: number;
   columns: number;
@@ -36,21 +36,21 @@ export interface GridSurface {
   kind: "grid_surface";
 }
 
-/** Range: a cone along x in the frame of the content, metres and radians; no cone if `range` is 0. */
+/** The cone of Range, along x in the frame of the content, metres and radians. */
 export interface RangeCone {
   range: number;
   field_of_view: number;
   kind: "range_cone";
 }
 
-/** TwistStamped, AccelStamped and Wrench: two vectors in the frame of the content, SI units. */
+/** The two vectors of TwistStamped, AccelStamped or Wrench, in the frame of the content, SI units. */
 export interface Screw {
   linear: number[];
   angular: number[];
   kind: "screw";
 }
 
-/** Effort: a ring around each joint. */
+/** The rings of Effort, one around each joint. */
 export interface EffortRings {
   joints: string[];
   poses: Float32Array;

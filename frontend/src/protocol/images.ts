@@ -12,7 +12,7 @@ export interface CameraModel {
   offset_y: number;
 }
 
-/** Image and Camera: one image. */
+/** One image of Image or Camera. */
 export interface ImageFrame {
   width: number;
   height: number;
@@ -25,7 +25,7 @@ export interface ImageFrame {
   kind: "image_frame";
 }
 
-/** The size of an Image display's panel in pixels, 0 while it is hidden. */
+/** The size of an Image display's panel in pixels, 0 while the panel is hidden. */
 export interface ImageSize {
   display: string;
   width: number;
@@ -33,7 +33,7 @@ export interface ImageSize {
   type: "image_size";
 }
 
-/** Map: the cells row by row from the origin's corner, each as the byte of its int8 value. */
+/** The cells of Map, row by row from the origin's corner, each as the byte of its int8 value. */
 export interface OccupancyMap {
   width: number;
   height: number;

@@ -64,7 +64,7 @@ export type InteractionMode =
 
 export type FeedbackEvent = "pose_update" | "menu_select" | "button_click" | "mouse_down" | "mouse_up";
 
-/** A handle of an interactive marker. */
+/** A control of an interactive marker. */
 export interface InteractiveControl {
   name: string;
   description: string;
@@ -83,7 +83,7 @@ export interface MarkerMenuEntry {
   title: string;
 }
 
-/** An interactive marker in the frame of the content; `pose` is x y z qx qy qz qw, `scale` metres. */
+/** An interactive marker in the frame of the content. */
 export interface InteractiveMarkerShape {
   name: string;
   description: string;

@@ -11,13 +11,13 @@ export interface Hello {
   type: "hello";
 }
 
-/** Whether delays of this program, and not of the connection, dominate the page's response time. */
+/** Whether the program, and not the connection, causes most of the delay that the page observes. */
 export interface ProgramIsLate {
   late: boolean;
   type: "program_is_late";
 }
 
-/** The number of messages that the page has received. */
+/** The number of messages that the page has received, by which it acknowledges them. */
 export interface Received {
   count: number;
   type: "received";
@@ -35,7 +35,7 @@ export interface FrameTable {
 
 export const DATA_KIND = 2;
 
-/** Remove a display's content: the content with a key, or all of it. */
+/** The removal of a display's content: the content under a key, or all of it. */
 export interface DisplayForgotten {
   display: string;
   key: string | null;

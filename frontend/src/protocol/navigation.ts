@@ -12,7 +12,7 @@ export interface WatchNavigation {
   type: "watch_navigation";
 }
 
-/** The user pressed a button: a command to both lifecycle managers, or one that cancels all goals. */
+/** A command of the user: one for both lifecycle managers, or one that cancels all goals. */
 export interface CommandNavigation {
   command: NavigationCommand;
   type: "command_navigation";
@@ -32,7 +32,7 @@ export interface NavigationState {
   type: "navigation_state";
 }
 
-/** Whether the last goal failed, which is shown over the scene. */
+/** Whether the last goal failed, which the page shows over the scene. */
 export interface GoalOutcome {
   reason: string;
   failed: boolean;

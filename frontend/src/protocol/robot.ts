@@ -27,7 +27,7 @@ export interface JointPositions {
   type: "joint_positions";
 }
 
-/** The user moved a joint; the position is in rad or m. */
+/** A position to which the user has moved a joint, rad or m. */
 export interface SetJoint {
   name: string;
   position: number;
@@ -40,12 +40,12 @@ export interface SetJoints {
   type: "set_joints";
 }
 
-/** The user pressed the Randomize button. */
+/** A press of the Randomize button. */
 export interface RandomizeJoints {
   type: "randomize_joints";
 }
 
-/** The user pressed the Center button. */
+/** A press of the Center button. */
 export interface CenterJoints {
   type: "center_joints";
 }
@@ -98,7 +98,7 @@ export interface Shape {
   surface: Surface | null;
 }
 
-/** A link to draw in the frame with its name. */
+/** A link to draw, and the frame whose pose the link has. */
 export interface LinkScene {
   name: string;
   frame: string;
@@ -122,7 +122,7 @@ export interface JointScene {
   upper: number | null;
 }
 
-/** The robot of a RobotModel display; `revision` counts its descriptions. */
+/** The robot of a RobotModel display; `revision` is the number of its descriptions so far. */
 export interface RobotScene {
   display: string;
   revision: number;
@@ -141,14 +141,14 @@ export interface MeshStatus {
   type: "mesh_status";
 }
 
-/** The user selected a link of a RobotModel display, and the page asks where it is written. */
+/** A request for the source positions of a RobotModel display's link, which the user has selected. */
 export interface AskProvenance {
   display: string;
   link: string;
   type: "ask_provenance";
 }
 
-/** Where a link is written, as lines with macro calls; response to `AskProvenance`. */
+/** The source positions of a link and of the macro calls, as lines; response to `AskProvenance`. */
 export interface LinkProvenance {
   display: string;
   link: string;

@@ -26,7 +26,7 @@ export interface WorldEntity {
   parts: string[];
 }
 
-/** Whether the world can be edited and is being edited, and its content. */
+/** Whether the world can be edited and is being edited, and its models and lights. */
 export interface ModellingState {
   available: boolean;
   active: boolean;
@@ -38,7 +38,7 @@ export interface ModellingState {
   type: "modelling_state";
 }
 
-/** A model on the search path, and the address that includes it. */
+/** A model on the search path, and the address that an ``<include>`` needs. */
 export interface ModelChoice {
   name: string;
   address: string;
@@ -60,13 +60,13 @@ export interface EntityChange {
   colour: number[] | null;
 }
 
-/** The user starts or stops editing the world; during editing the simulation is paused at its start. */
+/** Whether the user edits the world; during editing, the simulation is paused at its start. */
 export interface SetModelling {
   active: boolean;
   type: "set_modelling";
 }
 
-/** The user adds an object; `address` is the address of a model, and an empty `size` means the default size. */
+/** A request to add an object to the world. */
 export interface AddEntity {
   shape: NewKind;
   address: string;
@@ -75,55 +75,55 @@ export interface AddEntity {
   type: "add_entity";
 }
 
-/** The user changes objects, in one undo step. */
+/** A request to change objects, which is undone in one step. */
 export interface ChangeEntities {
   changes: EntityChange[];
   type: "change_entities";
 }
 
-/** The user copies objects; the copies are placed at an offset (x y z) from the originals. */
+/** A request to copy objects; the copies are placed at an offset (x y z) from the originals. */
 export interface CopyEntities {
   names: string[];
   offset: number[];
   type: "copy_entities";
 }
 
-/** The user deletes objects from the world. */
+/** A request to delete objects from the world. */
 export interface DeleteEntities {
   names: string[];
   type: "delete_entities";
 }
 
-/** The user groups several models into one, and they become its parts. */
+/** A request to group several models, which become the parts of one model. */
 export interface GroupEntities {
   names: string[];
   name: string;
   type: "group_entities";
 }
 
-/** The user splits a model into its parts. */
+/** A request to split a model into its parts. */
 export interface UngroupEntity {
   name: string;
   type: "ungroup_entity";
 }
 
-/** The user undoes the last change of the world. */
+/** A request to undo the last change of the world. */
 export interface UndoWorld {
   type: "undo_world";
 }
 
-/** The user redoes the change that was undone last. */
+/** A request to redo the change that was undone last. */
 export interface RedoWorld {
   type: "redo_world";
 }
 
-/** The user saves the world: into its file, or into `path` if it is set. */
+/** A request to save the world to its file, or to `path` if that is set. */
 export interface SaveWorld {
   path: string | null;
   type: "save_world";
 }
 
-/** The user opens the list of models on the search path. */
+/** A request for the models on the search path. */
 export interface AskModels {
   type: "ask_models";
 }
@@ -144,32 +144,32 @@ export interface SimulationNotice {
   type: "simulation_notice";
 }
 
-/** Confirms that the model that the page requested is in the world. */
+/** The confirmation that the model that the page requested is in the world. */
 export interface ModelAdded {
   name: string;
   type: "model_added";
 }
 
-/** The user resumes, pauses, steps or resets the simulation. */
+/** A request to resume, pause, step or reset the simulation. */
 export interface ControlSimulation {
   action: "play" | "pause" | "step" | "reset";
   type: "control_simulation";
 }
 
-/** The user adds a model or robot to the world, by a file path or a ``package://`` or ``model://`` address. */
+/** A request to add a model or robot to the simulation. */
 export interface SpawnModel {
   address: string;
   position: number[];
   type: "spawn_model";
 }
 
-/** The user deletes a model from the world. */
+/** A request to delete a model from the simulation. */
 export interface DeleteModel {
   model: string;
   type: "delete_model";
 }
 
-/** The user moves a model by an offset in the world frame, from its pose when `begins` was last true. */
+/** A request to move a model by an offset in the world frame. */
 export interface DragModel {
   model: string;
   begins: boolean;
@@ -177,7 +177,7 @@ export interface DragModel {
   type: "drag_model";
 }
 
-/** The user pushes a link (``model::link``) briefly; `force` is in the world frame, `point` in the link's frame. */
+/** A request to push a link (``model::link``) briefly. */
 export interface PushLink {
   link: string;
   point: number[];

@@ -8,7 +8,7 @@ export interface TimelineTopic {
   counts: number[];
 }
 
-/** The displayed recording: its name, its times and its topics. */
+/** The displayed recording: its name, its start and end, and its topics. */
 export interface Timeline {
   name: string;
   start: number;
@@ -18,7 +18,7 @@ export interface Timeline {
   type: "timeline";
 }
 
-/** The stored part of the last minutes: its first and last time, its size in bytes, and the maximum size. */
+/** The extent of the stored last minutes: first and last time, size in bytes, and maximum size. */
 export interface HistoryExtent {
   start: number;
   end: number;
@@ -39,38 +39,38 @@ export interface Playhead {
   type: "playhead";
 }
 
-/** The user resumes or pauses a recording. */
+/** A request to resume or pause playback. */
 export interface Play {
   playing: boolean;
   type: "play";
 }
 
-/** The user jumps to a time of a recording. */
+/** A request to jump to a time of a recording. */
 export interface SeekTime {
   position: number;
   type: "seek_time";
 }
 
-/** The user jumps to the next or previous displayed message, of any topic or of a single one. */
+/** A request to jump to the next or previous displayed message, of any topic or of a single one. */
 export interface StepTime {
   forward: boolean;
   topic: string;
   type: "step_time";
 }
 
-/** The user returns from the last minutes to the present. */
+/** A request to return from the last minutes to the present. */
 export interface GoLive {
   type: "go_live";
 }
 
-/** The user changes the speed of playback, or whether it repeats. */
+/** The speed of playback, and whether it repeats. */
 export interface SetPlayback {
   speed: number;
   loop: boolean;
   type: "set_playback";
 }
 
-/** A finished recording: its file on the server, size in bytes, length in seconds, and its address for pages. */
+/** A completed recording: path on the server, size in bytes, length in seconds, and download address. */
 export interface RecordedFile {
   name: string;
   path: string;
@@ -80,7 +80,7 @@ export interface RecordedFile {
   simulated: number | null;
 }
 
-/** The state of recording, for all pages; sent every second during a recording. */
+/** The state of recording, sent to all pages on changes and every second during a recording. */
 export interface RecordingState {
   possible: boolean;
   path: string;
@@ -92,18 +92,18 @@ export interface RecordingState {
   type: "recording_state";
 }
 
-/** The user records topics; an empty list means all present and future topics. */
+/** A request to record topics; an empty list means all present and future topics. */
 export interface RecordTopics {
   topics: string[];
   type: "record_topics";
 }
 
-/** The user stops the recording. */
+/** A request to stop the recording. */
 export interface StopRecording {
   type: "stop_recording";
 }
 
-/** The user saves the last minutes, or the part between two times, seconds since the epoch. */
+/** A request to save the last minutes, or the part of them between two times. */
 export interface SaveMinutes {
   start: number | null;
   end: number | null;
@@ -131,12 +131,12 @@ export interface Clock {
   type: "clock";
 }
 
-/** Reports that time was reset and displays dropped their messages. */
+/** The notice that time was reset and that displays have discarded their messages. */
 export interface TimeReset {
   type: "time_reset";
 }
 
-/** The user pauses or resumes time, or synchronizes it with a display's messages. */
+/** A request to pause or resume time, or to synchronize it with a display's messages. */
 export interface SetTime {
   paused: boolean;
   mode: SyncMode;
@@ -144,12 +144,12 @@ export interface SetTime {
   type: "set_time";
 }
 
-/** The user presses the Reset button: displays are cleared, and elapsed times restart at zero. */
+/** A press of the Reset button: displays are cleared, and elapsed times restart at zero. */
 export interface ResetTime {
   type: "reset_time";
 }
 
-/** Whether a page shows the clocks. */
+/** Whether the page receives the clocks from now on. */
 export interface WatchClock {
   watching: boolean;
   type: "watch_clock";

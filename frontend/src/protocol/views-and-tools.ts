@@ -9,7 +9,7 @@ export interface View {
   values: Record<string, PropertyValue>;
 }
 
-/** A type of view: its rows, whose IDs are names of values, and RViz's defaults, including rows not shown. */
+/** A class of views: its property rows, whose IDs are the names of values, and RViz's defaults. */
 export interface ViewClass {
   cls: string;
   properties: Property[];
@@ -22,7 +22,7 @@ export interface ViewClasses {
   type: "view_classes";
 }
 
-/** The view of a configuration; from then on the page controls the camera. */
+/** The view with which a page shows a configuration; afterwards the page controls its camera. */
 export interface ViewState {
   view: View;
   revision: number;
@@ -42,33 +42,33 @@ export interface SavedViews {
   type: "saved_views";
 }
 
-/** The page's current camera, sent at most a few times per second; the last one of any page is saved in the file. */
+/** The page's current view, sent at most a few times per second while it changes. */
 export interface ViewChanged {
   view: View;
   type: "view_changed";
 }
 
-/** The size of the robots with their meshes, measured by a page whose camera the user has not moved. */
+/** The size of the drawn robots, measured by a page whose camera the user has not moved. */
 export interface RobotMeasured {
   diagonal: number;
   ground: number;
   type: "robot_measured";
 }
 
-/** Add a view to the saved ones. */
+/** A request to add a view to the saved views. */
 export interface SaveView {
   view: View;
   type: "save_view";
 }
 
-/** Change the name or the values of a saved view. */
+/** A request to change the name or the values of a saved view. */
 export interface ChangeSavedView {
   id: string;
   view: View;
   type: "change_saved_view";
 }
 
-/** Remove a saved view. */
+/** A request to remove a saved view. */
 export interface RemoveSavedView {
   id: string;
   type: "remove_saved_view";
@@ -89,40 +89,40 @@ export interface ToolClass {
   name: string;
 }
 
-/** The tools in the order of the toolbar, sent after each change; the first is the default one. */
+/** The tools in the order of the toolbar, sent at first and after each change. */
 export interface Tools {
   tools: Tool[];
   classes: ToolClass[];
   type: "tools";
 }
 
-/** A tool's new setting, set by any page; after a refused value, it contains the current setting. */
+/** A tool's new property value, set by any page, or the current value after a refused one. */
 export interface ToolPropertyChanged {
   id: string;
   value: PropertyValue;
   type: "tool_property_changed";
 }
 
-/** The user edited a setting of a tool. */
+/** A property value that the user has entered for a tool. */
 export interface SetToolProperty {
   id: string;
   value: PropertyValue;
   type: "set_tool_property";
 }
 
-/** Add a tool of a class at the end of the toolbar. */
+/** A request to add a tool of a class at the end of the toolbar. */
 export interface AddTool {
   cls: string;
   type: "add_tool";
 }
 
-/** Remove a tool from the toolbar. */
+/** A request to remove a tool from the toolbar. */
 export interface RemoveTool {
   id: string;
   type: "remove_tool";
 }
 
-/** The user set a 2D Pose Estimate or 2D Goal Pose in the Fixed Frame: metres, and radians about z. */
+/** A pose that the user has set with a tool such as 2D Goal Pose. */
 export interface PoseChosen {
   tool: string;
   x: number;
@@ -131,7 +131,7 @@ export interface PoseChosen {
   type: "pose_chosen";
 }
 
-/** The user selected a point with a Publish Point tool, in the Fixed Frame, metres. */
+/** A point that the user has selected with a Publish Point tool, in the Fixed Frame, metres. */
 export interface PointChosen {
   tool: string;
   x: number;

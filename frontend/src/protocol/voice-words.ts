@@ -6,44 +6,44 @@ export interface EnrolledWord {
   takes: number;
 }
 
-/** Start or stop sending the words, initially and after every change. */
+/** Whether the page receives the words from now on, at first and after every change. */
 export interface WatchWords {
   watched: boolean;
   type: "watch_words";
 }
 
-/** Start recording a word: the sound until `EndTake` is the word, said once. It is not published. */
+/** The start of the recording of a word. */
 export interface BeginTake {
   name: string;
   type: "begin_take";
 }
 
-/** End the recording of a word. */
+/** The end of the recording of a word. */
 export interface EndTake {
   has_gaps: boolean;
   type: "end_take";
 }
 
-/** Remove a word. */
+/** A request to remove an enrolled word. */
 export interface RemoveWord {
   name: string;
   type: "remove_word";
 }
 
-/** Rename a word. */
+/** A request to rename an enrolled word. */
 export interface RenameWord {
   name: string;
   new_name: string;
   type: "rename_word";
 }
 
-/** Import the words of a file; they replace words with the same names. */
+/** A request to import the words of a file, which replace words with the same names. */
 export interface ImportWords {
   text: string;
   type: "import_words";
 }
 
-/** Request the file that contains the words. */
+/** A request for the text of the file that contains the words. */
 export interface AskWordsFile {
   type: "ask_words_file";
 }
@@ -57,7 +57,7 @@ export interface VoiceWords {
   type: "voice_words";
 }
 
-/** The verdict on a recording of a word. */
+/** The assessment of a recording of a word. */
 export interface TakeJudged {
   number: number;
   name: string;

@@ -14,7 +14,7 @@ export interface VoiceNode {
   type: "voice_node";
 }
 
-/** Start or stop sending recognized commands and answers. */
+/** Whether the page receives recognized commands and answers from now on. */
 export interface WatchVoice {
   watched: boolean;
   type: "watch_voice";
@@ -28,7 +28,7 @@ export interface Talk {
   type: "talk";
 }
 
-/** A command as text, handled like a spoken one. */
+/** A command that the user has typed, handled like a spoken one. */
 export interface SayCommand {
   text: string;
   type: "say_command";
@@ -36,7 +36,7 @@ export interface SayCommand {
 
 export type Talking = "nobody" | "you" | "another";
 
-/** The page that talks, and the listeners in the graph. */
+/** The page whose sound is published, and the subscribers in the graph. */
 export interface VoiceState {
   talking: Talking;
   sound_listeners: number;

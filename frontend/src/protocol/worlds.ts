@@ -22,7 +22,7 @@ export interface RayAngles {
   count: number;
 }
 
-/** A lidar of a world, with those of its rays that are drawn. */
+/** A lidar of a world, and those of its rays that are drawn. */
 export interface LidarScene {
   name: string;
   link: string;
@@ -35,7 +35,7 @@ export interface LidarScene {
   farthest: number;
 }
 
-/** A camera of a world; fields are as in `LidarScene`, and it looks along x with z up. */
+/** A camera of a world, which looks along x with z up; common fields are as in `LidarScene`. */
 export interface CameraScene {
   name: string;
   link: string;
@@ -58,7 +58,7 @@ export interface FogScene {
   density: number | null;
 }
 
-/** The content of a World display to draw; `revision` counts descriptions. */
+/** The drawable content of a World display; `revision` is the number of descriptions so far. */
 export interface WorldScene {
   revision: number;
   name: string;
@@ -76,14 +76,14 @@ export interface WorldScene {
   kind: "world_scene";
 }
 
-/** The poses of the links of a World display, in the order of the scene. */
+/** The poses of the links of a World display, in the order of `WorldScene`. */
 export interface WorldPoses {
   revision: number;
   poses: Float32Array;
   kind: "world_poses";
 }
 
-/** The lengths of the rays of a World display's lidar with this name, m, shape (vertical * horizontal,). */
+/** The measured ray lengths of a World display's lidar, m, shape (vertical * horizontal,). */
 export interface WorldRays {
   lidar: string;
   ranges: Float32Array;

@@ -392,7 +392,7 @@ export class Stage {
     return (drawn?.display.enabled && drawn.drawing.objectsOf?.(key)) || [];
   }
 
-  /** Returns the bounding box of what a display draws, in the fixed frame, m. */
+  /** Returns the bounding box of a display's objects, in the fixed frame, m. */
   boundsOf(display: string): Box3 {
     const drawn = this.drawings.get(display);
     return drawn ? new Box3().expandByObject(drawn.drawing.root) : new Box3();

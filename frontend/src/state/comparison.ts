@@ -6,7 +6,7 @@ import type { ElementName } from "./description-model";
 export type MarkName = "added" | "changed" | "removed" | "old";
 
 /**
- * Colours that can be told apart with red-green or blue-yellow colour blindness; `comparison.test.ts` computes how
+ * Colours that are distinct with red-green or blue-yellow colour blindness; `comparison.test.ts` computes how
  * well.
  */
 export const MARK_COLORS: Readonly<Record<MarkName, string>> = {

@@ -29,7 +29,7 @@ export class ToolsState {
   readonly currentChanged = new Signal<ToolState | null>();
   readonly valueChanged = new Signal<ToolState>();
   readonly hintChanged = new Signal<string>();
-  /** Why the active tool did not do what was requested; empty to hide the notice. */
+  /** Why the active tool refused a request; empty to hide the notice. */
   readonly noticeShown = new Signal<string>();
   tools: readonly ToolState[] = [];
   /** The classes of tools that can be added. */

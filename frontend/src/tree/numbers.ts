@@ -16,7 +16,7 @@ export function formatPoint(values: readonly number[]): string {
 }
 
 /**
- * Returns a number with fixed decimals and without minus zero; a large one, such as a limit that stands for none, has
+ * Returns a number with fixed decimals and without minus zero; a large one, such as a limit that means no limit, has
  * an exponent.
  */
 export function formatFixed(value: number, digits: number): string {

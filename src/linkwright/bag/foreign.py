@@ -1,8 +1,9 @@
-"""Read MCAP files that contain more than ROS 2 data, such as those of Foxglove and users' own programs.
+"""Reads MCAP files that also contain data of other systems, such as recordings of Foxglove.
 
-The library refuses the whole file if its profile is not ``ros2``, or if a schema is in a language other than those of
-ROS 2 (JSON, Protobuf, ROS 1 ...). Therefore the library reads substitutes of equal length instead: the profile
-``ros2``, and empty schemas. `BagReader` leaves out topics with other encodings, and reports them.
+The library rejects the whole file if the file's profile is not ``ros2``, or if a schema is in a language that ROS 2
+does not use (JSON, Protobuf, ROS 1 ...). The library therefore receives a patched file, in which these parts are
+replaced by others of equal length: the profile ``ros2``, and empty schemas. `BagReader` omits topics with other
+encodings, and reports them.
 """
 
 from __future__ import annotations
@@ -23,7 +24,10 @@ _LENGTH, _ID = struct.Struct("<I"), 2
 
 
 def patches_of(path: Path) -> dict[int, bytes]:
-    """Return the patches, offset -> bytes, that let the library read a finished file with an index."""
+    """Return the patches that let the library read a complete file with an index.
+
+    The result maps the offset of each patch in the file to the bytes to insert there.
+    """
     with path.open("rb") as file:
         patches = header_patch(file)
         file.seek(-HEAD.size - FOOTER_BODY.size - len(MAGIC), 2)
@@ -40,7 +44,10 @@ def patches_of(path: Path) -> dict[int, bytes]:
 
 
 def header_patch(file: BinaryIO) -> dict[int, bytes]:
-    """Return the patch that sets the profile to ``ros2``, using the space of the name of the writing program."""
+    """Return the patch that sets the profile to ``ros2``, or an empty dict if none is needed.
+
+    The profile replaces a part of the name of the program that wrote the file.
+    """
     file.seek(len(MAGIC))
     head = file.read(HEAD.size)
     if len(head) < HEAD.size:
@@ -56,11 +63,13 @@ def header_patch(file: BinaryIO) -> dict[int, bytes]:
 
 
 def schema_patch(place: int, body: bytes) -> dict[int, bytes]:
-    """Return the patch that removes the text of a schema that is not in a language of ROS 2.
+    """Return the patch that empties a schema in a language that ROS 2 does not use.
+
+    The result is an empty dict for any other schema.
 
     Args:
-        place: the offset of the body of its record in the file.
-        body: the body of its record.
+        place: the offset of the record's body in the file.
+        body: the body of the record.
     """
     parts = _texts(body, _ID, 3)
     if parts is None or parts[1] in _LANGUAGES:
@@ -70,12 +79,12 @@ def schema_patch(place: int, body: bytes) -> dict[int, bytes]:
 
 
 def known_schema(body: bytes) -> bytes:
-    """Return the body of a schema's record in a form that the library can read."""
+    """Return the body of a schema record, patched if the library cannot read it otherwise."""
     return body[:_ID] + schema_patch(0, body).get(_ID, body[_ID:])
 
 
 def _texts(body: bytes, place: int, count: int) -> list[bytes] | None:
-    """Return consecutive length-prefixed strings; None if they are truncated."""
+    """Return `count` consecutive length-prefixed strings, or None if the body is truncated."""
     found = []
     for _ in range(count):
         if place + _LENGTH.size > len(body):

@@ -1,13 +1,13 @@
-"""The messages of the last minutes in memory, up to a number of bytes, as a recording that can be played.
+"""The messages of the last minutes in memory, as a recording of limited size that can be played.
 
-Three measures make room for minutes. First, a state that does not change is stored sparsely: of messages that differ
-only in their stamps, the first and the newest are kept. Second, of a simulated clock, only the messages close to
-messages of other topics are kept. Third, older large messages (images, clouds) are thinned out when the memory is full:
-the older, the sparser.
+Three measures save memory. First, messages that repeat a state are stored sparsely: of messages that differ only in
+their stamps, only the first and the newest are stored. Second, messages of a simulated clock are stored only if they
+are close to messages of other topics. Third, if the memory is full, old large messages (images, clouds) are thinned
+out: the older they are, the sparser.
 
-Large messages are compressed with Zstandard in memory, in a thread, if that makes them clearly smaller. Images and
-clouds of a simulation shrink to a tenth or a hundredth; those with the noise of a real sensor hardly shrink. The
-fastest compression level quickly shows which kind a message is.
+A thread compresses large messages with Zstandard in memory, if compression makes them clearly smaller. Images and
+clouds of a simulation shrink to a tenth or a hundredth, while those with the noise of a real sensor hardly shrink. The
+fastest compression level is sufficient to distinguish the two.
 """
 
 from __future__ import annotations
@@ -42,14 +42,14 @@ K = TypeVar("K")
 
 
 class Packed(bytes):
-    """A compressed message; its length is that of the compressed bytes."""
+    """A compressed message; its length is the number of compressed bytes."""
 
     __slots__ = ()
 
 
 @cache
 def _zstd() -> Any:
-    """Return the compression library; None if the extra `bag` is not installed."""
+    """Return the compression library, or None if the extra `bag` is not installed."""
     if sys.version_info >= (3, 14):
         from compression import zstd
     else:
@@ -61,15 +61,15 @@ def _zstd() -> Any:
 
 
 def uncompressed_bytes(data: bytes) -> bytes:
-    """Return the original bytes of a message that may be compressed."""
+    """Return the serialized message, decompressed if it is a `Packed`."""
     return bytes(_zstd().decompress(data)) if type(data) is Packed else data
 
 
 class Shrinker(Generic[K]):
-    """Compresses messages in a separate thread, which the first large message starts.
+    """Compresses messages in a separate thread, which starts with the first large message.
 
     Args:
-        done: called in that thread with the key of a message and its compressed form.
+        done: called in that thread with the key of a message and the compressed message.
     """
 
     def __init__(self, done: Callable[[K, Packed], object]) -> None:
@@ -80,7 +80,7 @@ class Shrinker(Generic[K]):
         self._lock = threading.Lock()
 
     def offer(self, key: K, data: bytes) -> None:
-        """Queue a message for compression if it is large."""
+        """Queue a message for compression if the message is large."""
         if len(data) < _LEAST_BYTES or _zstd() is None:
             return
         with self._lock:
@@ -93,7 +93,7 @@ class Shrinker(Generic[K]):
         self._queue.put((key, data))
 
     def close(self) -> None:
-        """Stop compressing."""
+        """Stop the thread."""
         self._queue.put(None)
 
     def _run(self) -> None:
@@ -129,9 +129,9 @@ _Kept = tuple[int, int, bytes]
 
 
 class _Track:
-    """The messages of one topic.
+    """The stored messages of one topic.
 
-    The last of the dropped messages is kept, for the state at a time.
+    The last dropped message is stored as well, because it is the state at the beginning of the remaining messages.
 
     Args:
         name: the name of the topic.
@@ -152,22 +152,26 @@ class _Track:
 
     @property
     def can_be_thinned(self) -> bool:
-        """Whether it has enough large messages and does not reach back too far; never for transforms."""
+        """Whether the track has enough large messages and is short enough; False for transforms."""
         if len(self) < _FREED or self.size < _LARGE * len(self) or self.name in (TRANSFORMS, STATIC_TRANSFORMS):
             return False
         return self.kept[-1][0] - self.kept[self.first][0] < _LONGEST_NS
 
     def append(self, stamp_ns: int, number: int, data: bytes) -> None:
-        """Add a message."""
+        """Append a message."""
         self.kept.append((stamp_ns, number, data))
         self.size += _size(data)
 
     def repeat(self, stamp_ns: int, number: int, data: bytes, content: Content) -> int | None:
-        """Replace an equal earlier message, if there is one; return the additional bytes, or None.
+        """Replace an earlier message with equal content by this one.
 
-        The first message of a run is kept, and so is the time of the second, which is always the newest. A reader
-        between the two gets the state at that time, with a stamp that is not too old. For a clock, the second message
-        has the newest time too: the clock ran evenly between the two, see `clock_at`.
+        Of a run of equal messages, two are stored: the first message, and a second entry that always has the newest
+        data and the time at which the second message arrived. A reader between the two gets the state at that
+        time, with a stamp that is not too old. For a clock, the second entry has the newest time too, because
+        the clock ran evenly between the two (see `clock_at`).
+
+        Returns:
+            The number of additional bytes, or None if there is no message to replace.
         """
         run = self._runs.get(content.what)
         if run is None or not run.content.is_repeated_by(content) or stamp_ns - run.since_ns >= _STILL_NS:
@@ -185,7 +189,7 @@ class _Track:
         return len(data) - len(replaced)
 
     def drop(self) -> int:
-        """Drop the oldest message; return the freed bytes."""
+        """Drop the oldest message, and return the number of freed bytes."""
         oldest = self.kept[self.first]
         self.kept[self.first] = (oldest[0], oldest[1], b"")
         self.first += 1
@@ -195,7 +199,7 @@ class _Track:
             del self.kept[: self.first]
             self.first = 0
         if self.name == TRANSFORMS:
-            return _size(oldest[2])  # only the last seconds of these are useful
+            return _size(oldest[2])  # dropped transforms are not stored, because only the last seconds are useful
         key = (
             deserialize(uncompressed_bytes(oldest[2]), TFMessage).batch.children
             if self.name == STATIC_TRANSFORMS
@@ -206,7 +210,14 @@ class _Track:
         return 0 if replaced is None else _size(replaced[2])
 
     def thin(self, wanted: int) -> int:
-        """Drop messages that are closer to their neighbours than their age requires; return the freed bytes."""
+        """Drop messages that are closer to their neighbours than their age requires.
+
+        Args:
+            wanted: the number of bytes to free.
+
+        Returns:
+            The number of freed bytes.
+        """
         kept = self.kept[self.first :]
         now_ns = kept[-1][0] + NANOSECONDS_PER_SECOND
         gaps = [
@@ -228,38 +239,44 @@ class _Track:
         return freed
 
     def replace(self, number: int, packed: Packed) -> int:
-        """Replace the message with a number by its compressed form; return the freed bytes."""
+        """Replace a message by its compressed form, and return the number of freed bytes."""
         place = self._place(number)
         if place is None:
-            return 0  # it was dropped in the meantime
+            return 0  # the message was dropped in the meantime
         stamp_ns, _, data = self.kept[place]
         self.kept[place] = stamp_ns, number, packed
         self.size -= len(data) - len(packed)
         return len(data) - len(packed)
 
     def _place(self, number: int) -> int | None:
-        """Return the index of the message with a number; None if it has been dropped."""
+        """Return the index of the message with a number, or None if the message was dropped."""
         place = bisect_left(self.kept, number, lo=self.first, key=lambda item: item[1])
         return place if place < len(self.kept) and self.kept[place][1] == number else None
 
     def repeated_after(self, start_ns: int, end_ns: int) -> list[_Kept]:
-        """Return the messages of an interval that were repeated after the interval."""
+        """Return the messages in a time interval that were repeated after the interval."""
         return [item for item in self.between(start_ns, end_ns) if item[1] in self._lasting]
 
     def repeated_until(self, at_ns: int) -> list[_Kept]:
-        """Return the repeated messages up to a time: all of transforms, only the last one of other topics."""
+        """Return the messages whose content is still repeated at a time.
+
+        For transforms these are all repeated messages; for another topic, the last message if it is repeated.
+        """
         lasting = self.repeated_after(at_ns - _STILL_NS, at_ns)
         if self.name == TRANSFORMS:
             return lasting
         return lasting[-1:] if lasting[-1:] == self.until(at_ns, 1) else []
 
     def until(self, at_ns: int, count: int) -> list[_Kept]:
-        """Return the last messages up to a time, at most a given number of them."""
+        """Return the last `count` messages up to a time, or fewer if there are not as many."""
         end = bisect_right(self.kept, (at_ns, sys.maxsize), lo=self.first)
         return self.kept[max(self.first, end - count) : end]
 
     def clock_at(self, at_ns: int) -> list[_Kept]:
-        """Return the last message of a clock up to a time; if it represents several, return the interpolated time."""
+        """Return the last message of a clock up to a time, in a list that is empty if there is none.
+
+        If the message represents several clock messages, the time is interpolated.
+        """
         before = self.until(at_ns, 1)
         place = bisect_right(self.kept, (at_ns, sys.maxsize), lo=self.first)
         if not before or place == len(self.kept) or self.kept[place][1] not in self._lasting:
@@ -268,13 +285,16 @@ class _Track:
         return [(at_ns, number, clock_between(earlier, later, (at_ns - began_ns) / (end_ns - began_ns)))]
 
     def between(self, start_ns: int, end_ns: int) -> list[_Kept]:
-        """Return the messages from one time to another, inclusive."""
+        """Return the messages from one time to another, both inclusive."""
         begin = bisect_left(self.kept, (start_ns,), lo=self.first)
         return self.kept[begin : bisect_right(self.kept, (end_ns, sys.maxsize), lo=self.first)]
 
 
 class _Run:
-    """A run of messages of a topic with equal content: its start time, and the number of its second message."""
+    """A run of messages of a topic with equal content.
+
+    The run records its start time and the number of its second message.
+    """
 
     __slots__ = ("content", "second", "since_ns")
 
@@ -285,19 +305,19 @@ class _Run:
 
 
 class History:
-    """Keeps messages until newer ones need their space; it can be played while it is being filled.
+    """Stores messages until newer ones need their space; can be played while messages are added.
 
-    Messages may be added from any thread. Their times never decrease, whatever the clock does. Large messages are
-    compressed if that makes them smaller, see `shrinking`.
+    Messages may be added from any thread. The recorded times never decrease, even if the clock goes back. Large
+    messages are compressed if that makes them smaller.
 
     Args:
-        most_bytes: the maximum number of bytes; a message that alone is larger is not kept.
+        most_bytes: the maximum number of bytes; a larger message is not stored.
         now_ns: returns the current time, in nanoseconds since the epoch.
 
     Attributes:
-        lock: held while a message is added; hold it to prevent that.
+        lock: held while a message is added; hold the lock to prevent changes.
         size: the number of bytes in use.
-        count: the number of messages ever added.
+        count: the number of messages that were ever added.
     """
 
     def __init__(self, most_bytes: int, now_ns: Callable[[], int]) -> None:
@@ -315,9 +335,15 @@ class History:
         self._shrinker = Shrinker(self._replace)
 
     def add(self, topic: str, data: bytes, at_ns: int | None = None, content: Content | None = None) -> None:
-        """Add a message received now, or at another time later than the messages that are kept.
+        """Add a message.
 
-        With its content, see `stillness`, it takes no extra memory if it only repeats earlier messages.
+        Args:
+            topic: the name of the topic.
+            data: the serialized message.
+            at_ns: the time of reception; None for the current time. A time earlier than the newest message is replaced
+                by the time of that message.
+            content: the content of the message (see `stillness`); a message that only repeats earlier ones then needs
+                no additional memory.
         """
         size = _size(data)
         if size > self.most_bytes:
@@ -347,13 +373,13 @@ class History:
         self._shrinker.offer((track, number), data)
 
     def close(self) -> None:
-        """Stop compressing; the messages are kept."""
+        """Stop compressing; the stored messages remain available."""
         self._shrinker.close()
 
     def _as_time_passes(self, content: Content, clock_ns: int) -> Content:
-        """Return the content of a clock message.
+        """Return the content of a clock message for the comparison with earlier clock messages.
 
-        It counts as repeated while no other message arrives and time is not reset.
+        Clock messages count as repeated while no other message arrives and the time is not reset.
         """
         if clock_ns < self._clock_ns:
             self._changes += 1
@@ -361,7 +387,7 @@ class History:
         return content._replace(state=b"%d" % self._changes)
 
     def _make_room(self) -> bool:
-        """Thin out large messages, or drop the oldest message of all; return whether there was one."""
+        """Thin out large messages or drop the oldest message; return False if there are no messages."""
         large = self._largest
         if large is not None and large.size > self.most_bytes // 2 and large.can_be_thinned:
             freed = large.thin(self.most_bytes // _FREED)
@@ -374,13 +400,13 @@ class History:
         return True
 
     def _queue(self, track: _Track) -> None:
-        """Add a track to the queue, ordered by its oldest message."""
+        """Add a track to the queue that is ordered by the oldest message of each track."""
         if not track.is_queued and len(track) > 0:
             track.is_queued = True
             heappush(self._oldest, (track.kept[track.first][1], track.name, track))
 
     def _first(self) -> _Track | None:
-        """Return the track with the oldest message of all; None if nothing is kept."""
+        """Return the track with the oldest message, or None if there are no messages."""
         while self._oldest:
             number, _, track = self._oldest[0]
             if len(track) > 0 and track.kept[track.first][1] == number:
@@ -397,27 +423,27 @@ class History:
 
     @property
     def start_ns(self) -> int:
-        """The time of the oldest message, in nanoseconds since the epoch; the current time if there is none."""
+        """The time of the oldest message, in ns since the epoch; the current time without messages."""
         with self.lock:
             oldest = self._first()
             return self.end_ns if oldest is None else oldest.kept[oldest.first][0]
 
     @property
     def end_ns(self) -> int:
-        """The current time: the current state is the last message of each topic."""
+        """The current time, in nanoseconds since the epoch, because the last message of a topic is still valid."""
         return max(self._newest_ns, self._now_ns())
 
     def messages(self, topics: Collection[str], start_ns: int) -> Iterator[Recorded]:
-        """Yield the messages of topics from a time on.
+        """Yield the messages of topics that were received at or after a time.
 
-        After its end, the iterator continues when new messages arrive.
+        After the iterator is exhausted, it continues when new messages arrive.
         """
         return _LiveIterator(self, topics, start_ns)
 
     def state_at(self, topics: Collection[str], at_ns: int) -> list[Recorded]:
         """Return the last message of each topic up to a time.
 
-        For ``/tf`` they are those of two seconds, and for ``/tf_static`` all.
+        For ``/tf``, the result contains the messages of the last two seconds; for ``/tf_static``, all messages.
         """
         static: list[Recorded] = []
         found: list[Recorded] = []
@@ -441,20 +467,20 @@ class History:
         return static + sorted(found, key=lambda item: item[1])
 
     def time_before(self, topics: Collection[str], at_ns: int) -> int | None:
-        """Return when the last message before a time was received, in nanoseconds since the epoch.
+        """Return the reception time of the last message before a time, or None if there is none.
 
-        None if there is none.
+        Times are in nanoseconds since the epoch.
         """
         with self.lock:
             last = [self._tracks[name].until(at_ns - 1, 1) for name in topics if name in self._tracks]
             return max((item[0][0] for item in last if item), default=None)
 
     def part(self, start_ns: int, end_ns: int) -> list[Recorded]:
-        """Return the messages from one time to another, inclusive, in the order of their times.
+        """Return the messages from one time to another, both inclusive, ordered by time.
 
-        The messages needed to show the state at the beginning come first (see `state_at`), stamped with that time. The
-        states that are still unchanged at the end follow. Messages stay compressed, because many uncompressed messages
-        together would be too large, see `uncompressed_bytes`.
+        The result begins with the messages of the state at the start (see `state_at`), whose times are set to the
+        start. It ends with the messages that are still repeated at the end. Compressed messages remain
+        compressed, because they could be too large together (see `uncompressed_bytes`).
         """
         with self.lock:
             before = self.state_at(list(self._tracks), start_ns - 1)
@@ -468,7 +494,10 @@ class History:
         ]
 
     def after(self, topics: Collection[str], start_ns: int, number: int) -> tuple[int, Recorded] | None:
-        """Return the first message of topics from a time on that is not among the first `number`, and its number."""
+        """Return the first message of topics at or after a time, and its number.
+
+        The first `number` messages are skipped. The result is None if there is no such message.
+        """
         best: tuple[_Kept, str] | None = None
         with self.lock:
             for name in topics:
@@ -485,7 +514,10 @@ class History:
 
 
 class _LiveIterator(Iterator[Recorded]):
-    """Iterates over messages in the order of their times; after its end, it continues when new messages arrive."""
+    """Iterates over messages ordered by time.
+
+    After the iterator is exhausted, it continues when new messages arrive.
+    """
 
     def __init__(self, history: History, topics: Collection[str], start_ns: int) -> None:
         self._history = history

@@ -1,8 +1,8 @@
-"""Find single messages of an MCAP file by its indexes, without reading the data in between.
+"""Finds single messages of an MCAP file by its indexes, without reading the data in between.
 
-The chunk index at the end of the file lists the chunks that have messages of a channel, and where the index of each
-chunk is. That index gives the times and offsets within the chunk (the MCAP specification). So only one chunk is
-decompressed per message, however long the file is.
+The chunk index at the end of the file lists the chunks with messages of each channel, and the locations of their
+message indexes. A message index contains the times and the offsets within the chunk (the MCAP specification). Only one
+chunk is therefore decompressed per message, regardless of the length of the file.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class McapLookup:
         self._unpacked: OrderedDict[int, bytes] = OrderedDict()
 
     def latest(self, channels: Collection[int], at_ns: int) -> tuple[int, bytes] | None:
-        """Return the last message of channels up to a time, as its time and data; None if there is none."""
+        """Return the time and data of the last message of channels up to a time, or None."""
         best: tuple[int, ChunkInfo, int] | None = None
         for channel in channels:
             for chunk, latest_end in self._of(channel).backwards(at_ns):
@@ -57,7 +57,7 @@ class McapLookup:
         return None if best is None else (best[0], self._message(best[1], best[2]))
 
     def between(self, channels: Collection[int], start_ns: int, end_ns: int) -> list[tuple[int, bytes]]:
-        """Return the messages of channels from one time to another, inclusive, with their times, in order."""
+        """Return the times and data of the messages from one time to another, both inclusive, in order."""
         found = []
         for channel in channels:
             chunks = [each for each, _ in self._of(channel).backwards(end_ns) if each.message_end_time >= start_ns]
@@ -73,11 +73,13 @@ class McapLookup:
         return [(stamp, self._message(chunk, offset)) for stamp, chunk, offset in found]
 
     def counts(self, channel: int, *, exact: bool) -> Iterator[tuple[int, int, int]]:
-        """Yield the message counts of a channel by intervals: start and end in nanoseconds, and the count.
+        """Yield the start, the end and the number of messages of time intervals of a channel.
+
+        Times are in nanoseconds.
 
         Args:
             channel: the number of the channel.
-            exact: whether to yield each message separately instead of each chunk.
+            exact: whether to yield an interval for each message instead of each chunk.
         """
         for chunk in self._of(channel).chunks:
             if exact:
@@ -92,7 +94,7 @@ class McapLookup:
         return self._chunks[channel]
 
     def _entries(self, chunk: ChunkInfo, channel: int) -> list[tuple[int, int]]:
-        """Return the times and offsets of the messages of a channel in a chunk, in the order of their times."""
+        """Return the times and offsets of a channel's messages in a chunk, ordered by time."""
         file: Any = self._storage.bio
         file.seek(chunk.message_index_offsets[channel])
         _, _, _, size = _INDEX_HEAD.unpack(file.read(_INDEX_HEAD.size))
@@ -122,7 +124,7 @@ class McapLookup:
 
 
 class _ChannelChunks:
-    """The chunks that have messages of a channel, in the order of their first messages."""
+    """The chunks with messages of a channel, ordered by their first messages."""
 
     def __init__(self, chunks: Collection[ChunkInfo]) -> None:
         self.chunks = sorted(chunks, key=lambda chunk: chunk.message_start_time)
@@ -132,9 +134,9 @@ class _ChannelChunks:
             self._latest_ends.append(max(chunk.message_end_time, self._latest_ends[-1] if self._latest_ends else 0))
 
     def backwards(self, at_ns: int) -> Iterator[tuple[ChunkInfo, int]]:
-        """Yield the chunks that begin up to a time, from last to first.
+        """Yield the chunks that begin at or before a time, from the last to the first.
 
-        Each is yielded with the latest end time of that chunk and the chunks before it.
+        Each chunk is yielded with the latest end time of this chunk and all earlier chunks.
         """
         for place in range(bisect_right(self._starts, at_ns) - 1, -1, -1):
             yield self.chunks[place], self._latest_ends[place]

@@ -1,4 +1,4 @@
-"""Find the state of a recording at a time: the last message of each topic, and transforms."""
+"""Finds the state of a recording at a time: the last message of each topic, and the transforms."""
 
 from __future__ import annotations
 
@@ -29,24 +29,25 @@ class Moments:
     """Finds the state of an open recording at any time.
 
     Args:
-        reader: the library's reader, open.
+        reader: the library's reader, which is open.
     """
 
     def __init__(self, reader: Reader) -> None:
         self._reader = reader
 
     def state_at(self, topics: Collection[str], at_ns: int) -> list[Recorded]:
-        """Return the last message of each topic up to a time; for ``/tf`` those of two seconds, for ``/tf_static`` all.
+        """Return the last message of each topic up to a time.
 
-        If ``/tf`` paused for longer, they are the messages of the two seconds before the pause. Topics with these names
-        in a namespace are treated in the same way.
+        For ``/tf``, the result contains the messages of the last two seconds, or of the two seconds before a pause that
+        is longer than that; for ``/tf_static``, all messages. Topics with these names in a namespace are
+        treated in the same way.
 
         Args:
-            topics: the topics.
+            topics: the names of the topics.
             at_ns: the time, in nanoseconds since the epoch.
 
         Returns:
-            The messages in the order of their times, static transforms first.
+            The messages ordered by time, after the static transforms.
         """
         found: list[Recorded] = []
         moving: list[Recorded] = []
@@ -62,19 +63,17 @@ class Moments:
         return found + sorted(moving, key=lambda item: item[1])
 
     def time_before(self, topics: Collection[str], at_ns: int) -> int | None:
-        """Return when the last message before a time was received, in nanoseconds since the epoch.
+        """Return the reception time of the last message before a time, or None if there is none.
 
-        None if there is none.
+        Times are in nanoseconds since the epoch.
         """
         return max((stamp for _, stamp, _ in self._latest(topics, at_ns - 1)), default=None)
 
     def counts(self, parts: int) -> dict[str, list[int]]:
-        """Return the number of messages of each topic in equal parts of the recording.
+        """Return the number of messages of each topic in equal parts of the recording's duration.
 
-        Empty for a file without an index.
-
-        In a long recording, the messages of a chunk, or of a short time, are counted as if they were evenly distributed
-        over it.
+        The result is empty for a file without an index. In a long recording, the messages of a chunk, or of a short
+        interval, are counted as if they were evenly distributed.
         """
         start, duration = self._reader.start_time, max(1, self._reader.duration)
 
@@ -94,7 +93,10 @@ class Moments:
 
     @cached_property
     def _lookups(self) -> list[tuple[Any, McapLookup | RowLookup]]:
-        """The lookups of the files, if all have an index and no individually compressed messages; otherwise empty."""
+        """The lookups of the files, or an empty list if a file cannot be searched.
+
+        A file without an index, or with messages that are compressed one by one, cannot be searched.
+        """
         storage: Any = self._reader.storage
         found: list[tuple[Any, McapLookup | RowLookup]] = []
         for part in getattr(storage, "storages", [storage]):
@@ -140,7 +142,7 @@ class Moments:
         ]
 
     def _latest_without_index(self, topics: Collection[str], at_ns: int) -> Iterator[Recorded]:
-        """Yield the last messages, by reading ever longer times before, until all are found."""
+        """Yield the last message of each topic, by reading increasingly long intervals before the time."""
         missing = set(topics)
         end, length = at_ns + 1, _FIRST_WINDOW_NS
         while missing and end > self._reader.start_time:

@@ -1,4 +1,4 @@
-"""Names that all parts of this package use: files of recordings, topics of transforms, and messages."""
+"""The names of recordings' files and of topics, and the types of messages, that this package shares."""
 
 from __future__ import annotations
 
@@ -30,17 +30,23 @@ _NUMBERED = re.compile(r"(.+)_(0|[1-9][0-9]*)(\.mcap|\.db3)((?:\.zstd)?)")
 
 
 def numbered(folder: Path, number: int, suffix: str) -> Path:
-    """Return the path of a recording's file, as rosbag2 names it: the folder's name and the number, counted from 0."""
+    """Return the path of a file in a recording, named after the folder and a number that starts at 0."""
     return folder / f"{Path(folder.absolute()).name}_{number}{suffix}"
 
 
 def storage_of(path: Path) -> str | None:
-    """Return the storage format of a recording's file, compressed or not, from its name; None for another file."""
+    """Return the storage format that the name of a file indicates, or None if it indicates none.
+
+    The file may be compressed.
+    """
     return SUFFIXES.get(Path(path.name.removesuffix(PACKED)).suffix)
 
 
 def is_recording(path: Path) -> bool:
-    """Return whether a path looks like a recording: a recording's file, or a folder with its metadata or files."""
+    """Return whether a path looks like a recording.
+
+    A recording is a file with a suffix of recordings, or a folder with such files or a ``metadata.yaml``.
+    """
     if not path.is_dir():
         return storage_of(path) is not None or path.suffix == ROS1
     return (path / METADATA).exists() or any(storage_of(entry) is not None for entry in path.iterdir())
@@ -53,7 +59,7 @@ def in_order(files: Sequence[Path]) -> list[Path]:
 
 
 def are_of_one_recording(files: Sequence[Path]) -> bool:
-    """Return whether files are the parts of one recording, judging by their names: they have consecutive numbers."""
+    """Return whether the names of files have consecutive numbers, as those of one recording do."""
     found = [_NUMBERED.fullmatch(file.name) for file in files]
     numbers = sorted(int(match[2]) for match in found if match is not None)
     alike = {(match[1], match[3], match[4]) for match in found if match is not None}

@@ -1,6 +1,7 @@
-"""Read compressed files of recordings whose metadata are missing, because only the file was copied or after a kill.
+"""Reads compressed files of recordings without metadata.
 
-rosbag2 compresses whole files, or messages one by one; only ``metadata.yaml`` states which.
+The metadata are missing if only the file was copied, or if the recorder was killed. rosbag2 compresses whole files or
+single messages, and only ``metadata.yaml`` states which.
 """
 
 from __future__ import annotations
@@ -27,11 +28,13 @@ _MAGIC = b"\x28\xb5\x2f\xfd"
 
 
 def decompress_file(path: Path, folder: Path) -> Path:
-    """Decompress a file into a folder and return the path; of a truncated file, decompress the available part.
+    """Decompress a file into a folder, and return the path of the result.
+
+    Of a truncated file, the available part is decompressed.
 
     Raises:
-        zstd.ZstdError: it is not compressed with zstd.
-        OSError: the disk refuses.
+        zstd.ZstdError: the file is not compressed with zstd.
+        OSError: the result cannot be written.
     """
     plain = folder / path.name.removesuffix(PACKED)
     with zstd.open(path, "rb") as source, plain.open("wb") as target, suppress(EOFError):
@@ -40,10 +43,10 @@ def decompress_file(path: Path, folder: Path) -> Path:
 
 
 def unpack_messages(reader: Reader) -> None:
-    """Make the reader of a single file decompress messages, if the first one is compressed.
+    """Make the reader of a single file decompress its messages, if the first message is compressed.
 
     Args:
-        reader: the library's reader, open.
+        reader: the library's reader, which is open.
     """
     storage: Any = reader.storage
     first = next(iter(reader.messages()), None) if reader.message_count else None

@@ -1,4 +1,4 @@
-"""Write the files that a recording consists of, and the ``metadata.yaml`` that lists them."""
+"""Writes the files of a recording, and the ``metadata.yaml`` that lists them."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ class Part:
         custom_data: additional entries of the metadata.
 
     Attributes:
-        start_ns: when its first message was received, in nanoseconds since the epoch; None before there is one.
-        path: the file; if it is compressed as a whole, it has a second suffix once it is closed.
+        start_ns: the reception time of the first message, in nanoseconds since the epoch; None if there is no message.
+        path: the path of the file, which gets a second suffix when a compressed file is closed.
     """
 
     def __init__(self, path: Path, compression: str, custom_data: Mapping[str, str]) -> None:
@@ -52,7 +52,7 @@ class Part:
 
     @property
     def storage(self) -> Any:
-        """The writer of the file; None once it is closed."""
+        """The writer of the file, or None after the file was closed."""
         return self._writer.storage
 
     @property
@@ -77,7 +77,7 @@ class Part:
         self.start_ns = stamp_ns if self.start_ns is None else min(self.start_ns, stamp_ns)
 
     def flush(self) -> None:
-        """Pass all written messages to the operating system."""
+        """Pass all buffered messages to the operating system."""
         storage = self.storage
         if hasattr(storage, "close_chunk"):
             if storage.chunk.msgs:
@@ -87,8 +87,8 @@ class Part:
             storage.conn.commit()
 
     def close(self) -> _Metadata:
-        """Write the index; return the metadata of this file alone."""
-        with ScratchFolder("bag") as folder:  # the library writes the metadata there
+        """Write the index, close the file and return the metadata of this file."""
+        with ScratchFolder("bag") as folder:  # the library writes the metadata into this folder
             self._writer.metapath = Path(folder) / METADATA
             self._writer.close()
             document = yaml.safe_load(self._writer.metapath.read_text(encoding="utf-8"))
@@ -97,7 +97,7 @@ class Part:
         return information
 
     def abort(self) -> None:
-        """Abandon the file without finishing it."""
+        """Close the file without completing it."""
         self._writer.abort()
 
 
@@ -106,13 +106,13 @@ def write_metadata(folder: Path, parts: Sequence[_Metadata]) -> None:
 
     Args:
         folder: the folder of the recording.
-        parts: the metadata of each file, at least one.
+        parts: the metadata of the files, at least one.
     """
     write_information(folder, _joined(parts))
 
 
 def write_information(folder: Path, information: _Metadata) -> None:
-    """Write the given metadata to a ``metadata.yaml``."""
+    """Write metadata to the ``metadata.yaml`` in a folder."""
     text = yaml.safe_dump({INFORMATION: information}, sort_keys=False, allow_unicode=True)
     whole_files.write_whole_file(folder / METADATA, text)
 
@@ -143,14 +143,14 @@ def _joined(parts: Sequence[_Metadata]) -> _Metadata:
 
 
 def _let_any_thread_close(storage: Any) -> None:
-    """Reconnect to the database, because the library's connection may be used only in one thread."""
+    """Replace the library's database connection, which can be used only in one thread."""
     storage.conn.close()
     storage.conn = sqlite3.connect(f"file:{storage.path}", uri=True, check_same_thread=False)
     storage.cursor = storage.conn.cursor()
 
 
 class _File:
-    """A file that replaces the folder in which the library would create its file."""
+    """A path that replaces the folder in which the library would create its file."""
 
     def __init__(self, path: Path) -> None:
         self.name = path.stem

@@ -1,7 +1,7 @@
-"""Play a recording from any time: play, pause, seek, step, speed, loop.
+"""Plays a recording interactively: play, pause, seek, step, speed, loop.
 
-A recording in a file and the history of the last minutes are played in the same way: messages are published as bytes,
-with the time at which they were received, and subscribers need not know that they are not live.
+Recordings in files and the history of the last minutes are played in the same way. Messages are published in
+serialized form with the time at which they were received, so that subscribers handle them like live messages.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ SLOWEST, FASTEST = 0.1, 10.0
 
 
 class Recording(Protocol):
-    """The interface of recordings that can be played: messages by time, in nanoseconds since the epoch."""
+    """The interface of recordings that can be played; times are in nanoseconds since the epoch."""
 
     @property
     def start_ns(self) -> int:
@@ -37,13 +37,13 @@ class Recording(Protocol):
         """The time of the last message."""
 
     def messages(self, topics: Collection[str], start_ns: int, /) -> Iterator[Recorded]:
-        """Yield the messages of topics from a time on, in the order of their times."""
+        """Yield the messages of topics that were received at or after a time, ordered by time."""
 
     def state_at(self, topics: Collection[str], at_ns: int, /) -> list[Recorded]:
         """Return the state at a time: the last message of each topic, and transforms."""
 
     def time_before(self, topics: Collection[str], at_ns: int, /) -> int | None:
-        """Return when the last message before a time was received; None if there is none."""
+        """Return the reception time of the last message before a time, or None if there is none."""
 
 
 class Output(Protocol):
@@ -63,18 +63,18 @@ class Playback:
     """Plays a recording.
 
     Args:
-        node: the node whose dispatcher runs it.
+        node: the node whose dispatcher runs the playback.
         recording: the recording to play.
         output: the destination of the messages.
-        failed: called with an error when the recording cannot be read further; playback is then paused.
+        failed: called with the error if the recording cannot be read any further; playback is then paused.
 
     Attributes:
-        position_ns: the current time, in nanoseconds since the epoch; all messages up to it have been published.
-        playing: whether time advances.
-        speed: seconds of the recording per real second.
+        position_ns: the playback position, in nanoseconds since the epoch; all messages up to it have been published.
+        playing: whether the position advances.
+        speed: the number of recorded seconds per real second.
         loop: whether playback restarts at the end.
-        seeks: the number of seeks, whether or not the recording could be read there.
-        changed: called when one of these changes for a reason other than the passing of time.
+        seeks: the number of seeks, including seeks to positions that could not be read.
+        changed: called when one of these attributes changes for a reason other than the passing of time.
         on_reset: called when playback jumps to another time, so that subscribers drop their state.
     """
 
@@ -106,11 +106,11 @@ class Playback:
 
     @property
     def end_ns(self) -> int:
-        """The time of the last message."""
+        """The time of the last message, in nanoseconds since the epoch."""
         return self._recording.end_ns
 
     def play(self) -> None:
-        """Start playing; at the end, restart from the beginning."""
+        """Start playing, from the beginning if the position is at the end."""
         if self.playing:
             return
         if self._aim() >= self.end_ns:
@@ -127,7 +127,7 @@ class Playback:
             self._notify()
 
     def set_speed(self, speed: float) -> None:
-        """Set the speed, within `SLOWEST` and `FASTEST`."""
+        """Set the speed, clamped to the range from `SLOWEST` to `FASTEST`."""
         self.speed = min(FASTEST, max(SLOWEST, speed))
         self._notify()
 
@@ -137,10 +137,11 @@ class Playback:
         self._notify()
 
     def seek(self, stamp_ns: int) -> None:
-        """Jump to another time once the event loop is free; of several pending seeks, only the newest counts.
+        """Jump to another time in the next iteration of the event loop.
 
-        The new time is published immediately, and subscribers drop their state when the clock goes back. Therefore the
-        messages of the new state follow one iteration of the loop later.
+        Of several pending seeks, only the last one takes effect. The new time is published first. The messages of the
+        new state follow one iteration of the event loop later, because subscribers drop their state when the
+        clock goes back.
         """
         pending = self._target_ns is not None
         self._target_ns = min(self.end_ns, max(self.start_ns, stamp_ns))
@@ -152,7 +153,7 @@ class Playback:
 
         Args:
             forward: whether to step to the next message.
-            topic: the topic whose messages count; all subscribed topics if empty.
+            topic: the topic of the message to step to; empty for all subscribed topics.
         """
         self.pause()
         try:
@@ -171,10 +172,13 @@ class Playback:
             self._fail(error)
 
     def _step_to_next_of(self, topic: str) -> None:
-        """Play up to the next message of a topic; jump there if that is too much for one iteration of the loop."""
+        """Play up to the next message of a topic.
+
+        If these messages are too many for one iteration of the event loop, jump to that message instead.
+        """
         following = next(self._recording.messages({topic}, self._aim() + 1), None)
         if self._target_ns is None:
-            self._open_stream()  # a file supports only one open stream
+            self._open_stream()  # reading ahead closed the stream, because a file supports only one
             if following is not None:
                 self._show_until(following[1])
         if following is not None and self._aim() < following[1]:
@@ -182,15 +186,18 @@ class Playback:
         self._notify()
 
     def take_over(self, stamp_ns: int) -> None:
-        """Continue from a time whose state listeners already have."""
+        """Continue from a time whose state the subscribers have already received."""
         self.position_ns, self._target_ns = stamp_ns, None
         self._wanted = self._output.wanted()
         self._open_stream()
 
     def before(self, topics: Collection[str], length_ns: int, most_bytes: int) -> list[Recorded]:
-        """Return the messages of topics in the given duration before the current time.
+        """Return the messages of topics that precede the current position.
 
-        The result is empty if they exceed some bytes.
+        Args:
+            topics: the names of the topics.
+            length_ns: the duration before the position to read.
+            most_bytes: the maximum size of the messages; if they are larger, the result is empty.
         """
         found: list[Recorded] = []
         size = 0
@@ -203,13 +210,13 @@ class Playback:
                     found = []
                     break
                 found.append(message)
-            self._open_stream()  # a file supports only one open stream
+            self._open_stream()  # reading back closed the stream, because a file supports only one
         except LinkwrightError as error:
             self._fail(error)
         return found
 
     def review(self) -> None:
-        """Update the subscriptions; a topic with new subscriptions starts with its last message."""
+        """Update the set of subscribed topics, and publish the last message of each new one."""
         wanted = self._output.wanted()
         if wanted == self._wanted or self._target_ns is not None:
             return
@@ -222,7 +229,7 @@ class Playback:
             self._fail(error)
 
     def close(self) -> None:
-        """Stop and release the recording."""
+        """Stop playing and close the recording."""
         self._stop()
         self.changed.clear()
         self._stream, self._next = iter(()), None
@@ -252,7 +259,7 @@ class Playback:
         self._notify()
 
     def _open_stream(self) -> None:
-        """Open the stream of messages after the last published one."""
+        """Open the stream of messages that follow the last published message."""
         self._stream = self._recording.messages(self._wanted, self.position_ns + 1) if self._wanted else iter(())
         self._next = next(self._stream, None)
 
@@ -263,7 +270,7 @@ class Playback:
         now = self._steady_ns()
         passed, self._ticked_ns = now - self._ticked_ns, now
         if self._target_ns is None:
-            end = self.end_ns  # it grows while the recording is still being written
+            end = self.end_ns  # the end moves while the recording is still being written
             try:
                 self._show_until(min(end, self.position_ns + round(passed * self.speed)))
             except LinkwrightError as error:
@@ -277,10 +284,10 @@ class Playback:
         self._set_alarm()
 
     def _show_until(self, stamp_ns: int) -> None:
-        """Publish the messages up to a time, or as many as one iteration of the loop allows."""
+        """Publish the messages up to a time, at most as many as one iteration of the loop allows."""
         self._output.publish_time(stamp_ns)
         if self._next is None:
-            self._next = next(self._stream, None)  # a recording in progress may have grown
+            self._next = next(self._stream, None)  # a recording in progress may have new messages
         size = 0
         for _ in range(_MOST_MESSAGES):
             if self._next is None or self._next[1] > stamp_ns:

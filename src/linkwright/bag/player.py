@@ -1,4 +1,4 @@
-"""Play a recording: publish its messages at the intervals at which they were received."""
+"""Plays a recording with the original intervals between messages, as ``ros2 bag play`` does."""
 
 from __future__ import annotations
 
@@ -24,24 +24,24 @@ _SHORTEST_ROUND_NS = 1_000_000
 
 @dataclass(frozen=True)
 class PlayOptions:
-    """The options of playing.
+    """The options of playback.
 
     Attributes:
-        rate: the speed; 2.0 is twice the speed of the recording.
-        topics: the topics to play; all if empty.
-        without: the topics not to play.
-        pattern: a regular expression; without `topics`, play only topics whose names contain a match.
-        without_pattern: a regular expression; topics whose names contain a match are not played.
+        rate: the playback speed; 2.0 is twice the speed of the recording.
+        topics: the topics to play; empty for all.
+        without: the topics to exclude.
+        pattern: a regular expression; if `topics` is empty, only topics whose names contain a match are played.
+        without_pattern: a regular expression; topics whose names contain a match are excluded.
         loop: whether to restart at the end, without a limit.
-        clock_hz: the rate of the recording's time on ``/clock``; 0 to publish no clock.
-        clock_topics: topics before each of whose messages the time is published too.
-        clock_before_all: whether to publish the time before each message.
-        delay: seconds to wait at the beginning of each round.
-        start_offset: seconds from the start of the recording to begin at.
-        duration: seconds of the recording to play; None for all.
+        clock_hz: the rate at which the recording's time is published on ``/clock``, in Hz; 0 to publish no clock.
+        clock_topics: topics whose messages are each preceded by a clock message.
+        clock_before_all: whether every message is preceded by a clock message.
+        delay: the time to wait at the beginning of each round, in seconds.
+        start_offset: the position at which to begin, in seconds from the start of the recording.
+        duration: the duration to play, in seconds of the recording; None for all.
         until_ns: the time at which to end, in nanoseconds since the epoch; None to play to the end.
         paused: whether playback begins paused.
-        qos_overrides: topic -> the profile to publish with.
+        qos_overrides: topic -> the QoS profile to publish with.
     """
 
     rate: float = 1.0
@@ -62,12 +62,12 @@ class PlayOptions:
 
 
 class Player:
-    """Plays a recording; everything runs on the dispatcher of its node.
+    """Plays a recording on the dispatcher of a node.
 
     Args:
         node: the node that publishes; its log reports events.
-        bag: the recording, which stays open while it is played.
-        options: how it is played.
+        bag: the recording, which must stay open during playback.
+        options: the options of playback.
 
     Raises:
         LinkwrightError: BAG103, a topic is not in the recording.
@@ -147,11 +147,15 @@ class Player:
         self._schedule()
 
     def play_next(self) -> bool:
-        """Publish one more message while paused; return whether there was one."""
+        """Publish the next message while paused, and return whether there was one."""
         return self.burst(1) == 1
 
     def burst(self, count: int) -> int:
-        """Publish a number of messages while paused, or all of this round for 0; return how many were published."""
+        """Publish messages while paused, and return how many were published.
+
+        Args:
+            count: the number of messages; 0 for all remaining messages of this round.
+        """
         published = 0
         while (
             self._paused and self._next is not None and not self._is_beyond_end() and (published < count or not count)
@@ -238,7 +242,7 @@ class Player:
         self._alarm = self._node.handle.dispatcher.call_at(self._since_ns + max(0, wait_ns), self._run)
 
     def _anchor(self) -> None:
-        """Use the current moment as the origin of the playback time, because the rate is about to change."""
+        """Make the current moment the origin of the playback time, before the rate changes."""
         self._position_ns = self.now_ns()
         self._since_ns = self._steady_ns()
 
@@ -250,7 +254,7 @@ class Player:
     def _make_publishers(self) -> dict[str, Publisher[Any]]:
         options = self._options
         topics = {topic.name: topic for topic in self._bag.topics}
-        self._bag.messages(list(options.topics))  # reports a name that does not exist before playback starts
+        self._bag.messages(list(options.topics))  # report unknown topics before playback starts
         selection = TopicSelection(
             everything=not options.pattern,
             names=options.topics,

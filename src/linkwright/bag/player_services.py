@@ -1,4 +1,4 @@
-"""The services that control a player, as in rosbag2: ``/rosbag2_player/pause`` and so on."""
+"""The services that control a player, such as ``/rosbag2_player/pause``, as in rosbag2."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ _SERVICES = (
 
 
 class PlayerServices:
-    """Offers a player's services below the name of its node.
+    """Offers services that control a player, below the name of a node.
 
-    Names, types and refusals are those of ``rosbag2_transport::Player``.
+    Names, types and error responses follow ``rosbag2_transport::Player``.
 
     Args:
         node: the node.
@@ -68,7 +68,10 @@ class PlayerServices:
         return response
 
     def _play(self, _: Any, response: Any) -> Any:
-        """Refuse to play, as rosbag2 does while it is playing; once playing ends, the program ends too."""
+        """Reject the request to play.
+
+        rosbag2 rejects the request while it is playing, and its program ends when playback ends.
+        """
         self._logger.warning("The recording is already playing: the request is ignored")
         response.success = False
         return response

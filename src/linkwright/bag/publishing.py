@@ -1,4 +1,4 @@
-"""Create the publishers of a recording's topics."""
+"""Creates the publishers of a recording's topics."""
 
 from __future__ import annotations
 
@@ -22,12 +22,17 @@ _LATCHED_QOS = QoSProfile(100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 def make_publishers(
     node: Node, topics: Iterable[BagTopic], overrides: Mapping[str, QoSProfile] | None = None
 ) -> dict[str, Publisher[Any]]:
-    """Create a publisher for each topic, with its recorded quality of service; unknown types are logged.
+    """Create a publisher for each topic, with the recorded quality of service.
+
+    A topic of an unknown type is logged and skipped.
 
     Args:
         node: the node that publishes.
         topics: the topics of a recording.
-        overrides: topic -> the profile to publish with.
+        overrides: topic -> the QoS profile to publish with.
+
+    Returns:
+        The publishers by topic.
     """
     made: dict[str, Publisher[Any]] = {}
     for topic in topics:
@@ -42,7 +47,7 @@ def make_publishers(
 
 
 def missing_type_findings(bag: BagReader) -> list[Diagnostic]:
-    """Return the diagnostic BAG114 for topics that cannot be played because the definition of their type is missing."""
+    """Return the diagnostic BAG114 if topics cannot be played because their types are not known."""
     names = [f"{topic.name} ({topic.type_name})" for topic in bag.topics if not _is_known(topic.type_name)]
     if not names:
         return []
@@ -63,11 +68,12 @@ def _is_known(type_name: str) -> bool:
 
 
 class PublishedRecording:
-    """Publishes a recording, and its time on ``/clock``, for a playback that is alone in its graph.
+    """Publishes a recording and its time on ``/clock`` in a graph without other publishers.
 
     Args:
         node: the node that publishes.
-        bag: the recording. Its own ``/clock`` is left out: time is the time at which messages were received.
+        bag: the recording. The recording's own ``/clock`` is excluded, because the published time is the reception time
+            of messages.
         namespace: the namespace of a robot whose transforms are also published as ``/tf`` and ``/tf_static``; empty for
             none.
     """

@@ -1,6 +1,6 @@
-"""Quality of service in recordings: store it, and derive the profiles for recording and playing.
+"""Quality of service in recordings: conversion, and the profiles for recording and playing.
 
-The rules for deriving profiles are those of rosbag2 (``rosbag2_transport/qos.cpp``).
+The rules for choosing profiles are those of rosbag2 (``rosbag2_transport/qos.cpp``).
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ def from_bag(qos: Qos) -> QoSProfile:
     def duration(value: Any) -> Duration:
         return Duration(nanoseconds=value.sec * NANOSECONDS_PER_SECOND + value.nsec)
 
-    # Fast DDS does not announce the history depth of a publisher.
+    # Fast DDS does not announce the history of a publisher.
     history = policy(HistoryPolicy, qos.history)
     return QoSProfile(
         history=HistoryPolicy.KEEP_LAST if history is HistoryPolicy.UNKNOWN else history,
@@ -82,23 +82,23 @@ def from_bag(qos: Qos) -> QoSProfile:
 
 
 def to_text(profiles: Sequence[QoSProfile]) -> str:
-    """Return profiles as text for ``metadata.yaml`` up to version 8."""
+    """Format profiles as the string that ``metadata.yaml`` contains up to version 8."""
     from rosbags.rosbag2.metadata import dump_qos_v8
 
     return dump_qos_v8([to_bag(profile) for profile in profiles])
 
 
 def from_text(text: Any) -> list[QoSProfile]:
-    """Parse the profiles in a ``metadata.yaml``: text or, from version 9 on, a list."""
+    """Parse the profiles in a ``metadata.yaml``: a string or, from version 9 on, a list."""
     from rosbags.rosbag2.metadata import parse_qos
 
     return [from_bag(profile) for profile in parse_qos(text)]
 
 
 def profile_for_recording(offered: Sequence[QoSProfile]) -> QoSProfile:
-    """Return a profile to subscribe with that is compatible with every publisher of a topic.
+    """Return a QoS profile for a subscription that is compatible with all publishers of a topic.
 
-    It requests reliable and transient local if all publishers offer them.
+    The subscription requests reliable or transient local only if all publishers offer it.
 
     Args:
         offered: the profiles of the publishers.
@@ -113,10 +113,10 @@ def profile_for_recording(offered: Sequence[QoSProfile]) -> QoSProfile:
 
 
 def profile_for_playing(recorded: Sequence[QoSProfile]) -> QoSProfile:
-    """Return the profile to publish with: the recorded one if all publishers offered the same, otherwise the default.
+    """Return the recorded QoS profile if all publishers offered the same, otherwise the default.
 
-    The publishers may have differed in depth and lifespan; then the longest history counts, because one publisher now
-    represents all of them. rosbag2 keeps 10 messages regardless of the recording.
+    Publishers may differ in depth and lifespan. The largest depth is then used, because one publisher now represents
+    all of them. rosbag2 always uses a depth of 10 messages.
     """
     if recorded and len({_offered(qos) for qos in recorded}) == 1:
         return max(recorded, key=lambda qos: (qos.history is HistoryPolicy.KEEP_ALL, qos.depth))
@@ -130,14 +130,14 @@ def _offered(qos: QoSProfile) -> tuple[object, ...]:
 
 
 def overrides_of(document: object, source: str) -> dict[str, QoSProfile]:
-    """Return the profiles in a ``--qos-profile-overrides-path`` file, by topic.
+    """Return the QoS profiles by topic in an overrides file.
 
     Args:
-        document: the parsed YAML file: topic -> policies by name.
-        source: the file's name, for errors.
+        document: the parsed YAML file of ``--qos-profile-overrides-path``: topic -> policies by name.
+        source: the name of the file, for errors.
 
     Raises:
-        LinkwrightError: BAG106, it does not have that form.
+        LinkwrightError: BAG106, the structure of the file is invalid.
     """
     if not isinstance(document, Mapping) or not all(isinstance(item, Mapping) for item in document.values()):
         raise _wrong(

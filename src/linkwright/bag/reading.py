@@ -1,4 +1,4 @@
-"""Read a recording: its topics, and its messages in the order of their times."""
+"""Reads a recording: its topics, and its messages ordered by time."""
 
 from __future__ import annotations
 
@@ -44,9 +44,9 @@ class BagTopic:
     """A topic of a recording.
 
     Attributes:
-        name: its absolute name.
-        type_name: its type, such as ``std_msgs/msg/String``.
-        count: the number of its messages.
+        name: the absolute name.
+        type_name: the type, such as ``std_msgs/msg/String``.
+        count: the number of messages.
         serialization_format: ``cdr``.
         offered_qos: the recorded profiles of the publishers; empty if they were not recorded.
     """
@@ -61,18 +61,18 @@ class BagTopic:
 class BagReader:
     """An open recording; close it, or use it in a ``with`` statement.
 
-    Message types that are not known otherwise become known from the definitions in the recording.
+    Unknown message types are registered from the definitions in the recording.
 
     Args:
-        path: a folder with a ``metadata.yaml``, or a single ``.mcap`` or ``.db3`` file. Of a recording that was killed,
-            and so has neither ``metadata.yaml`` nor an index, everything that was written is read. A folder may also
-            contain only the numbered files of one recording.
-        called: its name in messages; by default its path.
-        parts: the files of the recording, with any names, if several are to be read as one.
+        path: a folder with a ``metadata.yaml``, or a single ``.mcap`` or ``.db3`` file. If the recorder was killed,
+            there is neither a ``metadata.yaml`` nor an index, and everything that was written is read. A
+            folder can also contain only the numbered files of one recording.
+        called: the name of the recording in messages; None for its path.
+        parts: the files of the recording, with any names, if several files are read as one recording.
 
     Raises:
-        LinkwrightError: BAG101, the path does not exist; BAG102, it is not a recording or is damaged; BAG107, `rosbags`
-            is not installed.
+        LinkwrightError: BAG101, the path does not exist; BAG102, the path is not a recording, or the recording is
+            damaged; BAG107, `rosbags` is not installed.
     """
 
     def __init__(self, path: str | Path, called: str | None = None, parts: Sequence[Path] = ()) -> None:
@@ -121,7 +121,7 @@ class BagReader:
             return self._opened_one(targets[0], self.path, self._called)
         from linkwright.bag.several import SeveralReader
 
-        # A recorder that is killed at the beginning of a file leaves it empty.
+        # A file is empty if the recorder is killed right after creating it.
         whole = [target for target in targets if target.stat().st_size] or targets
         self._is_cut_off = len(whole) < len(targets)
         return SeveralReader([self._opened_one(path, path, path.name) for path in whole])
@@ -144,9 +144,9 @@ class BagReader:
         return reader
 
     def _finished(self, target: Path) -> Any:
-        """Return the target for the library.
+        """Return what to pass to the library: the path, or an in-memory file with the missing parts added.
 
-        It is the path, or its file with missing parts added and refused parts removed.
+        Parts that the library would reject are removed from the in-memory file.
         """
         if target.is_file() and target.suffix == PACKED:
             from linkwright.bag.packed import decompress_file
@@ -171,8 +171,8 @@ class BagReader:
     def findings(self) -> list[Diagnostic]:
         """The diagnostics of the recording.
 
-        They report that it has no end because it was killed or truncated in a copy (BAG109), topics that are not ROS
-        2's (BAG112), and that it has no messages (BAG113).
+        They report a recording without an end, because the recorder was killed or the copy is truncated (BAG109),
+        topics that are not ROS 2's (BAG112), and a recording without messages (BAG113).
         """
         found = []
         if not self._is_cut_off and not any(topic.count for topic in self.topics):
@@ -206,22 +206,22 @@ class BagReader:
 
     @property
     def compression(self) -> str:
-        """The compression other than that of chunks: ``file``, ``message``, or empty."""
+        """The unit of compression besides chunks: ``file``, ``message``, or an empty string for none."""
         return "file" if self._targets[0].suffix == PACKED else str(self._reader.compression_mode or "")
 
     @property
     def start_ns(self) -> int:
-        """When the first message was received, in nanoseconds since the epoch; 0 if there is none."""
+        """The time of the first message, in nanoseconds since the epoch; 0 if there is none."""
         return self._reader.start_time if self._reader.message_count else 0
 
     @property
     def end_ns(self) -> int:
-        """When the last message was received, in nanoseconds since the epoch; 0 if there is none."""
+        """The time of the last message, in nanoseconds since the epoch; 0 if there is none."""
         return self._reader.end_time - 1 if self._reader.message_count else 0
 
     @property
     def definitions(self) -> list[tuple[str, str, str, str]]:
-        """The definitions of its topics' types: name, ``ros2msg`` or ``ros2idl``, definition, hash."""
+        """The definitions of the topics' types: name, ``ros2msg`` or ``ros2idl``, definition and hash."""
         found = {
             connection.msgtype: connection
             for connection in self._reader.connections
@@ -233,12 +233,14 @@ class BagReader:
     def messages(
         self, topics: Collection[str] = (), start_ns: int | None = None, stop_ns: int | None = None
     ) -> Iterator[Recorded]:
-        """Yield the messages in the order of their times: topic, nanoseconds since the epoch, CDR bytes.
+        """Yield the topic, the time and the CDR bytes of each message, ordered by time.
+
+        Times are in nanoseconds since the epoch.
 
         Args:
-            topics: the topics to read; all if empty.
-            start_ns: the first time to read.
-            stop_ns: the time at which to stop; messages from this time on are not read.
+            topics: the topics to read; empty for all.
+            start_ns: the time of the first message to read; None for the beginning.
+            stop_ns: the time at which to stop, exclusive; None for the end.
 
         Raises:
             LinkwrightError: BAG102, the rest cannot be read; BAG103, a topic is not in the recording.
@@ -270,9 +272,9 @@ class BagReader:
         return self._look(lambda: self._moments.state_at(topics, at_ns))
 
     def time_before(self, topics: Collection[str], at_ns: int) -> int | None:
-        """Return when the last message before a time was received, in nanoseconds since the epoch.
+        """Return the reception time of the last message before a time, or None if there is none.
 
-        None if there is none.
+        Times are in nanoseconds since the epoch.
 
         Raises:
             LinkwrightError: BAG102, the messages cannot be read.
@@ -280,9 +282,9 @@ class BagReader:
         return self._look(lambda: self._moments.time_before(topics, at_ns))
 
     def counts(self, parts: int) -> dict[str, list[int]]:
-        """Return the number of messages of each topic in equal parts of the recording.
+        """Return the number of messages of each topic in equal parts of the recording's duration.
 
-        Empty for a file without an index.
+        The result is empty for a file without an index.
         """
         return self._moments.counts(parts) if self._reader.message_count else {}
 
@@ -303,7 +305,7 @@ class BagReader:
             yield connection.topic, stamp_ns, data
 
     def close(self) -> None:
-        """Close its files. A second call does nothing."""
+        """Close the files of the recording; a second call has no effect."""
         self._open.close()
 
     def __enter__(self) -> Self:
@@ -328,10 +330,10 @@ def open_recording(path: str | Path) -> BagReader:
 
 
 def _ignore_profiles_of_files(storage: Any) -> None:
-    """Let the library match topics of ``metadata.yaml`` with topics in files even if their profiles differ.
+    """Make the library match the topics of ``metadata.yaml`` and of the files despite other profiles.
 
-    Otherwise recordings made before rosbag2 stored profiles in files, and some converted ones, are read without
-    messages.
+    Otherwise the library reads no messages from recordings made before rosbag2 stored profiles in files, and from some
+    converted ones.
     """
     listed = {(connection.topic, connection.msgtype): connection for connection in storage.connections}
     for file in storage.storages:
@@ -341,7 +343,7 @@ def _ignore_profiles_of_files(storage: Any) -> None:
 
 
 def _storage_targets(path: Path, called: str) -> list[Path]:
-    """Return the paths for the library: the folder, or its files if the metadata are missing."""
+    """Return the paths to pass to the library: the folder, or its files if the metadata are missing."""
     if not path.exists():
         raise LinkwrightError(Diagnostic("BAG101", phrase("there is no recording '{path}'", path=called)))
     if path.is_file() or ((path / METADATA).exists() and not _lacks_ends(path)):
@@ -371,7 +373,7 @@ def _storage_targets(path: Path, called: str) -> list[Path]:
 
 
 def _lacks_ends(folder: Path) -> bool:
-    """Return whether a recording with metadata has several files, one of which is unfinished."""
+    """Return whether a recording with metadata consists of several files and one is unfinished."""
     files = sorted(folder.glob("*.mcap"))
     return len(files) > 1 and are_of_one_recording(files) and any(is_unfinished(file) for file in files)
 

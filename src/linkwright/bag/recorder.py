@@ -1,4 +1,4 @@
-"""Record: subscribe to topics as they appear and write their messages."""
+"""Records messages: subscribes to topics as they appear, and writes their messages."""
 
 from __future__ import annotations
 
@@ -18,23 +18,23 @@ _POLL_SECONDS = 0.1
 
 
 class Recorder:
-    """Writes the messages of topics into a recording until it is closed.
+    """Writes the messages of topics to a recording until it is closed.
 
-    It flushes the received messages to the operating system every second, so that little is lost if the process is
-    killed.
+    The recorder passes the received messages to the operating system every second, so that at most one second is
+    missing if the process is killed.
 
     Args:
         node: the node that subscribes; its log reports events.
         selection: the topics to record.
-        writer: the destination of the messages; closing the recorder closes it too.
-        overrides: topic -> the profile to subscribe with, instead of one that suits the publishers.
+        writer: the destination of the messages, which is closed with the recorder.
+        overrides: topic -> the QoS profile to subscribe with, instead of one derived from the publishers.
         discover: whether topics that appear later are recorded too.
         polling_seconds: the interval between two searches for new topics.
         without_publishers: whether topics that have only subscriptions are recorded too.
         without_subscriptions: whether topics without a subscription are recorded too.
         paused: whether messages are dropped until `toggle_paused` is called.
         guarded: wraps the node's callbacks, so that the caller can stop when the disk is full; by default the node logs
-            it.
+            the error.
     """
 
     def __init__(
@@ -70,7 +70,7 @@ class Recorder:
 
     @property
     def message_count(self) -> int:
-        """The number of messages written."""
+        """The number of messages written so far."""
         return self._count
 
     def toggle_paused(self) -> None:
@@ -79,7 +79,7 @@ class Recorder:
         self._logger.info("Pausing recording." if self.paused else "Resuming recording.")
 
     def close(self) -> None:
-        """Write the queued messages and close the recording; report the requested topics that are not in it."""
+        """Write the queued messages, close the recording, and report requested topics without messages."""
         self._flushing.cancel()
         if self._looking is not None:
             self._looking.cancel()
@@ -91,7 +91,7 @@ class Recorder:
 
     def _look(self) -> None:
         if self._by_clock and self._looking is not None and self._now() == 0:
-            return  # no clock has been published yet; subscribing later keeps latched messages
+            return  # simulated time is not known yet; a later subscription still receives latched messages
         for name, types in self._node.get_topic_names_and_types():
             if name in self._writer.topics or name in self._refused:
                 continue
@@ -135,7 +135,7 @@ class Recorder:
             return
         stamp = self._now() if self._by_clock else info.received_timestamp
         if self._by_clock and stamp == 0:
-            return  # no clock has been published yet
+            return  # simulated time is not known yet
         self._writer.write(name, stamp, data)
         self._count += 1
 

@@ -1,4 +1,4 @@
-"""The services that control a recorder, as in rosbag2: ``/rosbag2_recorder/snapshot`` and so on."""
+"""The services that control a recorder, such as ``/rosbag2_recorder/snapshot``, as in rosbag2."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from linkwright.messages import get_message
 
 
 class RecorderServices:
-    """Offers a recorder's services below the name of its node, and publishes each split on ``events/write_split``.
+    """Offers services that control a recorder, and publishes each split on ``events/write_split``.
 
-    Names and types are those of ``rosbag2_transport::Recorder``.
+    The services are below the name of the node. Names and types follow ``rosbag2_transport::Recorder``.
 
     Args:
         node: the node.

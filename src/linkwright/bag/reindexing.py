@@ -1,4 +1,4 @@
-"""Recreate the ``metadata.yaml`` of a recording from its files, as ``ros2 bag reindex`` does."""
+"""Rebuilds the ``metadata.yaml`` of a recording from its files, as ``ros2 bag reindex`` does."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from linkwright.messages import type_hash
 def reindex(folder: Path) -> None:
     """Write the ``metadata.yaml`` of a recording, and replace an existing one.
 
-    Unfinished files are listed with their complete messages.
+    An unfinished file is listed with its complete messages.
 
     Args:
         folder: the folder with the files of one recording, whose names end with _0, _1 and so on.
 
     Raises:
-        LinkwrightError: BAG117, the folder has no such files; BAG105, the disk refuses; see also `BagReader`.
+        LinkwrightError: BAG117, the folder has no such files; BAG105, the file cannot be written; see also `BagReader`.
     """
     from linkwright.bag.parts import write_metadata
 

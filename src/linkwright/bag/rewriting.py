@@ -1,7 +1,7 @@
-"""Rewrite recordings with other files, topics or compression, as ``ros2 bag convert`` does.
+"""Rewrites recordings with other files, topics or compression, as ``ros2 bag convert`` does.
 
-The keys of its YAML file are those of rosbag2's ``StorageOptions`` and ``RecordOptions``; keys that only tune how
-rosbag2 writes are ignored.
+The keys of the YAML file with the options are those of rosbag2's ``StorageOptions`` and ``RecordOptions``. Keys that
+only affect rosbag2's performance are ignored.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _LISTS = ("topics", "topic_types", "services", "exclude_topics", "exclude_topic_
 
 
 def rewrite(sources: Sequence[str | Path], options_file: str | Path) -> list[Path]:
-    """Write one or more recordings with the messages of others, in the order of their times.
+    """Write recordings with the messages of other recordings, ordered by time.
 
     Args:
         sources: the recordings to read.
@@ -47,10 +47,10 @@ def rewrite(sources: Sequence[str | Path], options_file: str | Path) -> list[Pat
 
 
 class _Output:
-    """A recording to write, from its entry in the file of options.
+    """A recording to write, from an entry in the options file.
 
     Attributes:
-        begin_ns, end_ns: messages outside these times are left out.
+        begin_ns, end_ns: the time range of the messages to write.
     """
 
     def __init__(self, entry: Mapping[str, Any], file: str) -> None:
@@ -84,7 +84,10 @@ class _Output:
         )
 
     def opened(self, bags: Sequence[BagReader]) -> BagWriter:
-        """Open the recording with its topics; a topic with several types in the sources is left out, as in rosbag2."""
+        """Create the recording with its topics, and return its writer.
+
+        A topic with different types in the sources is omitted, as in rosbag2.
+        """
         writer = BagWriter(
             str(self._entry["uri"]),
             self._storage,

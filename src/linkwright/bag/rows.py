@@ -1,7 +1,7 @@
-"""Find single messages of an SQLite recording, without reading the data in between.
+"""Finds single messages of an SQLite recording, without reading the data in between.
 
-rosbag2's files have an index of times but none of topics. One pass over the rows, which reads no message, determines
-the intervals in which each topic has messages; a search then reads only such an interval.
+rosbag2's files have an index of times but none of topics. One pass over the rows, without reading the messages,
+determines the intervals in which each topic has messages. A search then reads only such an interval.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class RowLookup:
         self._part_ns = storage.metadata.duration // _PARTS + 1
 
     def latest(self, topics: Collection[int], at_ns: int) -> tuple[int, bytes] | None:
-        """Return the last message of topics up to a time, as its time and data; None if there is none."""
+        """Return the time and data of the last message of topics up to a time, or None."""
         best = max((item for topic in topics for item in self._latest(topic, at_ns)), default=None)
         if best is None:
             return None
@@ -39,7 +39,7 @@ class RowLookup:
         return best[0], data
 
     def between(self, topics: Collection[int], start_ns: int, end_ns: int) -> list[tuple[int, bytes]]:
-        """Return the messages of topics from one time to another, inclusive, with their times, in order."""
+        """Return the times and data of the messages from one time to another, both inclusive, in order."""
         words = "SELECT timestamp, data FROM messages WHERE timestamp BETWEEN ? AND ? AND topic_id = ?"
         found = []
         for topic in topics:
@@ -48,11 +48,13 @@ class RowLookup:
         return sorted(found, key=lambda row: row[0])
 
     def counts(self, topic: int, *, exact: bool) -> Iterator[tuple[int, int, int]]:
-        """Yield the message counts of a topic by intervals: start and end in nanoseconds, and the count.
+        """Yield the start, the end and the number of messages of time intervals of a topic.
+
+        Times are in nanoseconds.
 
         Args:
-            topic: the id of the topic.
-            exact: whether to yield each message separately.
+            topic: the ID of the topic.
+            exact: whether to yield an interval for each message.
         """
         if exact:
             for (stamp_ns,) in self._rows("SELECT timestamp FROM messages WHERE topic_id = ?", topic):
@@ -63,7 +65,7 @@ class RowLookup:
             yield begin_ns, begin_ns + self._part_ns - 1, count
 
     def _latest(self, topic: int, at_ns: int) -> Iterator[tuple[int, int]]:
-        """Yield the time and the row of the last message of a topic up to a time, if there is one."""
+        """Yield the time and the row ID of the last message of a topic up to a time, if there is one."""
         words = "SELECT timestamp, id FROM messages WHERE timestamp BETWEEN ? AND ? AND topic_id = ?"
         parts = list(self._parts.get(topic, {}))
         for part in reversed(parts[: bisect_right(parts, (at_ns - self._start_ns) // self._part_ns)]):
@@ -75,7 +77,10 @@ class RowLookup:
                 return
 
     def _spans(self, topic: int, start_ns: int, end_ns: int) -> list[tuple[int, int]]:
-        """Return the known spans of a time interval in which a topic has messages, in ns; adjacent spans are merged."""
+        """Return the parts of a time interval that can contain messages of a topic, in nanoseconds.
+
+        Adjacent parts are merged.
+        """
         spans: list[tuple[int, int]] = []
         for part in self._parts.get(topic, {}):
             begin_ns = self._begin_ns(part)
@@ -92,7 +97,10 @@ class RowLookup:
 
     @cached_property
     def _parts(self) -> dict[int, dict[int, int]]:
-        """The parts of the recording's time in which each topic has messages, in order, with the number of messages."""
+        """The number of messages of each topic in the parts of the recording's duration.
+
+        The result maps the topic's ID to a dict of part -> count, in order, without empty parts.
+        """
         words = "SELECT topic_id, (timestamp - ?) / ? AS part, count(*) FROM messages GROUP BY topic_id, part"
         found: dict[int, dict[int, int]] = {}
         for topic, part, count in self._rows(f"{words} ORDER BY part", self._start_ns, self._part_ns):

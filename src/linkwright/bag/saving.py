@@ -1,4 +1,4 @@
-"""Save messages in memory as a recording."""
+"""Saves messages that are in memory as a recording."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class SavedTopic:
 
     Attributes:
         type_name: the type, such as ``std_msgs/msg/String``.
-        offered: the profiles of its publishers.
+        offered: the QoS profiles of the topic's publishers.
     """
 
     type_name: str
@@ -34,13 +34,13 @@ class SavedTopic:
 def save_messages(
     path: Path, topics: Mapping[str, SavedTopic], messages: Sequence[Recorded], on_progress: Callable[[float], object]
 ) -> None:
-    """Write messages into a new recording.
+    """Write messages to a new recording.
 
     Args:
         path: the folder to create.
         topics: the topics of all messages.
-        messages: the messages in the order of their times, compressed or not.
-        on_progress: called from time to time with the written fraction, 0 to 1.
+        messages: the messages ordered by time, compressed or not.
+        on_progress: called repeatedly with the fraction of messages written, from 0 to 1.
 
     Raises:
         LinkwrightError: BAG105, BAG107, BAG108; see `BagWriter`.
@@ -55,7 +55,7 @@ def save_messages(
 
 
 def last_reset_ns(messages: Sequence[Recorded]) -> int | None:
-    """Return the last time at which ``/clock`` went back; None if it never did."""
+    """Return the time at which ``/clock`` last went back, or None if it never did."""
     found, now = None, None
     for name, stamp_ns, data in messages:
         if name == CLOCK_TOPIC:
@@ -67,9 +67,10 @@ def last_reset_ns(messages: Sequence[Recorded]) -> int | None:
 
 
 def in_simulated_time(messages: Sequence[Recorded]) -> list[Recorded]:
-    """Return the messages with the system's times replaced by the simulated times of ``/clock``.
+    """Return messages whose times are the simulated times of ``/clock`` instead of the system's times.
 
-    Messages before the first one of ``/clock`` get its time; without ``/clock``, all keep their times.
+    Messages before the first clock message get the time of that message. Without ``/clock``, all messages keep their
+    times.
     """
     now = next((_clock_ns(data) for name, _, data in messages if name == CLOCK_TOPIC), None)
     if now is None:

@@ -1,4 +1,4 @@
-"""Select the topics to record."""
+"""Selects the topics to record."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ class TopicSelection:
     """The options of ``bag record`` that select topics.
 
     Attributes:
-        everything: whether to select every topic that is not hidden.
-        names: topics to select, absolute names.
-        types: types whose topics to select.
-        pattern: a regular expression; selects every topic and service whose name contains a match.
-        without_names: topics to exclude, whatever the other options select.
-        without_types: types whose topics to exclude.
-        without_pattern: a regular expression; excludes topics whose names contain a match.
-        hidden: whether to treat hidden topics, whose names begin with an underscore, like others.
-        every_service: whether to select the events of every service that publishes its requests (introspection).
-        services: services whose events to select, absolute names.
-        without_services: services to exclude.
+        everything: whether to select all topics that are not hidden.
+        names: the absolute names of topics to select.
+        types: the types whose topics are selected.
+        pattern: a regular expression; topics and services whose names contain a match are selected.
+        without_names: the absolute names of topics to exclude, even if another option selects them.
+        without_types: the types whose topics are excluded.
+        without_pattern: a regular expression; topics whose names contain a match are excluded.
+        hidden: whether to treat hidden topics, whose names begin with an underscore, like other topics.
+        every_service: whether to select the events of all services that publish them (service introspection).
+        services: the absolute names of services whose events are selected.
+        without_services: the absolute names of services to exclude.
 
     Raises:
         LinkwrightError: BAG104, a regular expression is not valid.
@@ -51,12 +51,12 @@ class TopicSelection:
 
     @property
     def is_empty(self) -> bool:
-        """Whether nothing is selected."""
+        """Whether the options select nothing."""
         return not (self._accepts_unnamed or self.names or self.services)
 
     @property
     def is_complete_with(self) -> frozenset[str] | None:
-        """The topics after whose discovery the search may stop; None if new topics may always match."""
+        """The topics after whose discovery the search can stop; None if any new topic may match."""
         return None if self._accepts_unnamed else self.named
 
     @property
@@ -72,8 +72,8 @@ class TopicSelection:
         """Return whether a topic is selected.
 
         Args:
-            name: its absolute name.
-            type_name: its type, such as ``std_msgs/msg/String``.
+            name: the absolute name of the topic.
+            type_name: the type, such as ``std_msgs/msg/String``.
         """
         if name in self.without_names or type_name in self.without_types or self._is_unwanted(name):
             return False

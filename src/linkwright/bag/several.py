@@ -1,4 +1,4 @@
-"""Read the files of a recording without ``metadata.yaml`` as one recording, in the order of their times."""
+"""Reads the files of a recording without ``metadata.yaml`` as one recording, ordered by time."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ class SeveralReader(Reader):
         readers: the open readers of the files; the caller closes them.
     """
 
-    def __init__(self, readers: Sequence[Reader]) -> None:  # the library's own method expects a path
+    def __init__(self, readers: Sequence[Reader]) -> None:  # the constructor of the library's class expects a path
         self.path = readers[0].path
         self.storage = _Storages(sorted(readers, key=lambda reader: reader.start_time))
         self.is_open = True
 
 
 class _Storages:
-    """The library's storage interface for several files.
+    """A storage of several files, with the interface that the library expects.
 
     Attributes:
         storages: the storages of the files.
         connections: one connection for each topic and type.
-        metadata: the metadata of all files combined.
+        metadata: the combined metadata of all files.
     """
 
     def __init__(self, readers: Sequence[Reader]) -> None:
@@ -70,7 +70,7 @@ class _Storages:
     def messages(
         self, connections: Collection[Connection], start: int | None = None, stop: int | None = None
     ) -> Generator[_Message, None, None]:
-        """Yield the messages of all files in the order of their times; each file is read once its time is reached."""
+        """Yield the messages of all files ordered by time; a file is opened when its first message is next."""
         wanted = {_key(connection): connection for connection in connections}
         waiting = [
             reader for reader in self._readers if reader.message_count and (start is None or reader.end_time > start)

@@ -1,4 +1,4 @@
-"""The last messages of all topics, kept until a snapshot is requested: rosbag2's snapshot mode."""
+"""The last messages of all topics in memory until a snapshot is requested: rosbag2's snapshot mode."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from collections import deque
 
 
 class LatestMessages:
-    """The most recent messages, up to a number of bytes; older messages are dropped.
+    """The most recent messages up to a total size; older messages are dropped.
 
     Args:
-        size: the maximum number of bytes. A message that is longer is not kept.
+        size: the maximum number of bytes; a message that is larger is not stored.
     """
 
     def __init__(self, size: int) -> None:

@@ -1,4 +1,4 @@
-"""Extract the content of messages without their stamps, to detect a stream that only repeats itself."""
+"""Extracts the content of messages without their stamps, to detect streams that repeat themselves."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ class Content(NamedTuple):
     """The content of a message without its stamps.
 
     Attributes:
-        what: its subject: the frames of transforms, because many nodes publish on their topic; otherwise empty.
+        what: the child frames of transforms, because many nodes publish on the same topic; empty for other messages.
         state: the serialized values without stamps, and for transforms also without poses.
         poses: the numbers of the poses, float64: positions in m and quaternions.
-        clock_ns: the simulated time in a clock message; None for any other message.
+        clock_ns: the simulated time of a clock message; None for any other message.
     """
 
     what: str
@@ -40,20 +40,20 @@ class Content(NamedTuple):
     clock_ns: int | None = None
 
     def is_repeated_by(self, newer: Content) -> bool:
-        """Return whether a newer message has the same content; poses may differ by a nanometre."""
+        """Return whether a newer message has the same content, with a tolerance of 1 nm for positions."""
         if self.state != newer.state or len(self.poses) != len(newer.poses):
             return False
         if self.poses == newer.poses:
             return True
-        with np.errstate(invalid="ignore"):  # infinite numbers must be equal bit for bit
+        with np.errstate(invalid="ignore"):  # infinite values are compared by their bits
             moved = np.abs(np.frombuffer(self.poses) - np.frombuffer(newer.poses))
         return bool((moved <= _SAME_PLACE).all())
 
 
 def content_of(type_name: str, data: bytes) -> Content | None:
-    """Return the content of a message that has a header, or of transforms or a clock; None for any other message.
+    """Return the content of a message with a header, of transforms or of a clock; otherwise None.
 
-    Messages without a stamp report events: two equal ones do not mean that nothing happened.
+    A message without a stamp reports an event, so two equal messages still report two events.
     """
     if type_name == _TRANSFORMS:
         return _content_of_transforms(data)
@@ -65,12 +65,12 @@ def content_of(type_name: str, data: bytes) -> Content | None:
 
 
 def clock_between(earlier: bytes, later: bytes, share: float) -> bytes:
-    """Return a clock message between two others, assuming that time passed evenly.
+    """Return a clock message between two others, with a linearly interpolated time.
 
     Args:
         earlier: the first message.
         later: the second message.
-        share: the position between them, 0 to 1.
+        share: the position between the two messages, from 0 to 1.
     """
     (first, last) = (content.clock_ns or 0 for content in map(_content_of_clock, (earlier, later)) if content)
     return earlier[:_CAPSULE] + _TIME.pack(*divmod(first + round(share * (last - first)), NANOSECONDS_PER_SECOND))
@@ -92,12 +92,12 @@ def _begins_with_header(type_name: str) -> bool:
 
 
 class _Layout(NamedTuple):
-    """The offsets of stamps and poses, which are the same in each message with the same frames.
+    """The offsets of stamps and poses, which are equal in all messages with the same frames.
 
     Attributes:
         what: the frames.
-        state: the bytes after the encoding header, without stamps and poses.
-        numbers: the offsets of the poses' bytes.
+        state: the bytes behind the encapsulation header, without stamps and poses.
+        numbers: the offsets of the bytes of poses.
         blank: the offsets of the bytes of stamps and poses.
     """
 
@@ -113,7 +113,7 @@ _layouts: dict[int, _Layout] = {}
 
 
 def _content_of_transforms(data: bytes) -> Content | None:
-    """Return the frames and their poses; None if the bytes are big-endian or truncated."""
+    """Return the content of transforms, or None if the bytes are big-endian or truncated."""
     if len(data) < 2 * _CAPSULE or data[1] != _LITTLE:
         return None
     layout = _layouts.get(len(data))

@@ -10,11 +10,11 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 
 def summary_text(bag: BagReader, *, topic_names_only: bool = False) -> str:
-    """Return the files, times and topics of a recording as text, in the layout of ``ros2 bag info``.
+    """Return the files, times and topics of a recording in the format of ``ros2 bag info``.
 
     Args:
         bag: the recording.
-        topic_names_only: whether to list only the names, one per line.
+        topic_names_only: whether to list only the names of topics, one per line.
     """
     if topic_names_only:
         return "".join(f"{topic.name}\n" for topic in bag.topics)
@@ -26,8 +26,8 @@ def layout(files: Sequence[str], size: int, storage: str, span_ns: tuple[int, in
     """Return the summary of a recording as text.
 
     Args:
-        files: the names of its files.
-        size: the total size of its files in bytes.
+        files: the names of the files.
+        size: the total size of the files, in bytes.
         storage: one of `linkwright.bag.STORAGES`.
         span_ns: the times of the first and the last message, in nanoseconds since the epoch.
         topics: the topics with their types and message counts.

@@ -1,9 +1,10 @@
-"""Read MCAP files without an end or an index: of a recorder that was killed, truncated in a copy, or streamed.
+"""Reads MCAP files without an end or an index.
 
-A file is a sequence of records, each with its kind and length (the MCAP specification). All complete records are
-usable. The missing summary, which lists the chunks, is created in memory; readers see it after the file's own bytes. So
-nothing is copied, and seeking in such a file is as fast as in others. Records that do not belong to ROS 2 are hidden in
-the same way.
+Such files come from a recorder that was killed, from a truncated copy or from a stream. A file is a sequence of
+records, each with a kind and a length (the MCAP specification), and all complete records are usable. The missing
+summary, which lists the chunks, is created in memory and appended to the bytes of the file for readers. The file is
+therefore not copied, and seeking is as fast as in other files. Records that do not belong to ROS 2 are replaced in the
+same way.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ _COUNTS = struct.Struct("<QHIIIIQQ")
 
 
 def is_unfinished(path: Path) -> bool:
-    """Return whether a file begins like an MCAP file but does not end like one."""
+    """Return whether a file begins like an MCAP file but does not end like an MCAP file."""
     with path.open("rb") as file:
         if file.read(len(MAGIC)) != MAGIC:
             return False
@@ -48,7 +49,7 @@ def is_unfinished(path: Path) -> bool:
 
 
 def has_index(path: Path) -> bool:
-    """Return whether a finished MCAP file ends with the position of its summary."""
+    """Return whether a complete MCAP file has a summary."""
     length = HEAD.size + FOOTER_BODY.size
     with path.open("rb") as file:
         if path.stat().st_size < length + 2 * len(MAGIC):
@@ -59,7 +60,7 @@ def has_index(path: Path) -> bool:
 
 
 def make_readable(path: Path) -> ReadableFile | None:
-    """Return a file in a form that the library can read; None if the library can read the file itself."""
+    """Return a view of a file that the library can read, or None if the library can read the file itself."""
     if not is_unfinished(path) and has_index(path):
         patches = patches_of(path)
         return ReadableFile(path, path.stat().st_size, b"", patches) if patches else None
@@ -70,13 +71,13 @@ def make_readable(path: Path) -> ReadableFile | None:
 
 
 class ReadableFile:
-    """The complete records of an MCAP file, with a summary; the library uses it in place of a path.
+    """The complete records of an MCAP file and a summary, which the library accepts in place of a path.
 
     Args:
-        path: the file, which is only read.
+        path: the file, which is not modified.
         size: the number of bytes of the file that are visible.
-        tail: the bytes that follow them.
-        patches: replaced bytes: offset -> bytes.
+        tail: the bytes that follow the visible bytes.
+        patches: the bytes to replace, as offset -> bytes.
 
     Attributes:
         name: the name of the file.
@@ -97,17 +98,17 @@ class ReadableFile:
         return self._path.exists()
 
     def is_dir(self) -> bool:
-        """Return False, because it is a file."""
+        """Return False, because the object represents a file."""
         return False
 
     def open(self, mode: str = "rb") -> BinaryIO:
-        """Open a stream of the bytes of the file and of the summary."""
+        """Open a stream of the visible bytes of the file followed by the summary."""
         assert mode == "rb"
         return cast("BinaryIO", io.BufferedReader(_Patched(self._path, self._size, self._tail, self._patches), 1 << 16))
 
 
 class _Patched(io.RawIOBase):
-    """The beginning of a file with some bytes replaced, and bytes appended."""
+    """A stream of the beginning of a file with some bytes replaced, followed by other bytes."""
 
     def __init__(self, path: Path, size: int, tail: bytes, patches: Mapping[int, bytes]) -> None:
         self._file = path.open("rb", buffering=0)
@@ -150,7 +151,7 @@ class _Patched(io.RawIOBase):
 
 @dataclass(slots=True)
 class _Chunk:
-    """A chunk: its position in the file, its record, and the positions of its message indexes by channel."""
+    """The position of a chunk in the file, its record, and the positions of its message indexes."""
 
     offset: int
     length: int
@@ -166,7 +167,7 @@ class _Chunk:
 
 @dataclass(slots=True)
 class _Scan:
-    """The records found in a file."""
+    """The records that were found in a file."""
 
     end: int = len(MAGIC)
     chunks: list[_Chunk] = field(default_factory=list)
@@ -231,7 +232,7 @@ def _chunk(file: BinaryIO, offset: int, length: int) -> _Chunk:
 
 
 def _scan_chunk(file: BinaryIO, chunk: _Chunk, scan: _Scan, made: bytearray) -> None:
-    """Read the schemas and channels in a chunk, and index its messages if the file lacks the index."""
+    """Read the schemas and channels in a chunk, and create missing message indexes."""
     from rosbags.rosbag2.storage_mcap import decompress
 
     file.seek(chunk.offset + chunk.length - chunk.compressed_size)
@@ -254,7 +255,7 @@ def _scan_chunk(file: BinaryIO, chunk: _Chunk, scan: _Scan, made: bytearray) -> 
 
 
 def _records(data: bytes) -> Iterator[tuple[int, int, int]]:
-    """Yield the records of an uncompressed chunk: kind, position, length of the content."""
+    """Yield the kind, the position and the content length of each record in an uncompressed chunk."""
     place = 0
     while place + HEAD.size <= len(data):
         kind, length = HEAD.unpack_from(data, place)
@@ -263,7 +264,7 @@ def _records(data: bytes) -> Iterator[tuple[int, int, int]]:
 
 
 def _tail(scan: _Scan, made: bytes) -> bytes:
-    """Return the missing indexes, the end of the data, and the summary."""
+    """Return the missing message indexes, the end of the data section, and the summary."""
     before = made + _record(_DATA_END, bytes(4))
     chunks = [chunk for chunk in scan.chunks if chunk.indexes]
     totals: dict[int, int] = defaultdict(int)

@@ -1,4 +1,4 @@
-"""Diagnose files that cannot be read as recordings, by their first bytes."""
+"""Determines from the first bytes of a file why it cannot be read as a recording."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ class Verdict(NamedTuple):
 
 
 def diagnose(path: Path, error: Exception) -> Verdict:
-    """Find out why a recording cannot be read.
+    """Determine why a recording cannot be read.
 
     Args:
-        path: the path of its file or folder.
-        error: the library's error, which is reported if the file itself shows no reason.
+        path: the path of the recording's file or folder.
+        error: the library's error, which is the reason if the file itself shows none.
     """
     if path.suffix == ROS1:
         return _ros1()
@@ -43,7 +43,7 @@ def diagnose(path: Path, error: Exception) -> Verdict:
         head = None
     reason = foreign(str(error).strip().rstrip(".") or type(error).__name__)
     if head is not None and (found := _by_its_beginning(path, head)) is not None:
-        is_mcap = head.startswith(_MCAP)  # the library reports what is wrong with an MCAP file
+        is_mcap = head.startswith(_MCAP)  # the error of the library explains what is wrong with an MCAP file
         return found._replace(note=phrase("the reader reports: {words}", words=reason)) if is_mcap else found
     return Verdict(reason, None)
 

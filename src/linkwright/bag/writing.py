@@ -1,4 +1,4 @@
-"""Write recordings of topics."""
+"""Writes recordings."""
 
 from __future__ import annotations
 
@@ -44,17 +44,18 @@ _LONGEST_WRITE = 30.0
 class BagWriter:
     """A recording that is being written; close it, or use it in a ``with`` statement.
 
-    The recording is finished even if a signal other than SIGKILL ends the process (`unfinished`). Files are named and
+    The recording is completed even if a signal other than SIGKILL ends the process (`unfinished`). Files are named and
     split as by rosbag2's ``SequentialWriter``.
 
     Args:
-        path: the folder to create; for a single file, the file.
+        path: the folder to create, or the file if `single_file` is set.
         storage: one of `STORAGES`.
         compression: one of `COMPRESSIONS`.
         single_file: whether to write only an MCAP file, which needs no separate metadata; rosbag2 creates a folder.
-        max_size: bytes after which another file is begun; 0 for one file.
-        max_seconds: seconds after which another file is begun; 0 for one file.
-        snapshot_size: if positive, only `take_snapshot` writes, and the latest messages are kept in this many bytes.
+        max_size: the size in bytes after which another file is begun; 0 for no limit.
+        max_seconds: the duration in seconds after which another file is begun; 0 for no limit.
+        snapshot_size: if positive, only `take_snapshot` writes messages, and this is the size in bytes of the buffer
+            for the latest messages.
         custom_data: additional entries of the metadata.
 
     Raises:
@@ -62,8 +63,8 @@ class BagWriter:
             BAG116, the requested file size is too small.
 
     Attributes:
-        path: the given path.
-        on_split: called with the names of the closed file and the new one.
+        path: the argument `path`.
+        on_split: called with the names of the closed file and of the new file.
     """
 
     def __init__(
@@ -102,21 +103,21 @@ class BagWriter:
 
     @property
     def topics(self) -> Collection[str]:
-        """The topics added so far."""
+        """The topics that have been added so far."""
         return self._topics.keys()
 
     @property
     def size(self) -> int:
-        """The number of bytes written to its files so far."""
+        """The number of bytes written to files so far."""
         if self._is_file:
             return self.path.stat().st_size
         return sum(path.stat().st_size for path in self.path.iterdir())
 
     def add_topic(self, name: str, type_name: str, offered_qos: Collection[QoSProfile] = ()) -> None:
-        """Add a topic, so that its messages can be written.
+        """Add a topic, so that messages of the topic can be written.
 
         Raises:
-            LinkwrightError: MSG101, the type is not known; BAG108, the disk refuses.
+            LinkwrightError: MSG101, the type is not known; BAG108, a file cannot be written.
         """
         facts = (type_name, schema_of(type_name), type_hash(type_name), [to_bag(qos) for qos in offered_qos])
         with self._lock:
@@ -129,17 +130,17 @@ class BagWriter:
             self._topics[name] = facts
 
     def write(self, topic: str, stamp_ns: int, data: bytes | memoryview) -> None:
-        """Write a message; with `snapshot_size`, keep it for a snapshot.
+        """Write a message; with `snapshot_size`, buffer it for a snapshot instead.
 
         Args:
             topic: a topic that was added.
-            stamp_ns: when it was received, in nanoseconds since the epoch.
-            data: CDR bytes with their four-byte header.
+            stamp_ns: the time of reception, in nanoseconds since the epoch.
+            data: CDR bytes including the encapsulation header of four bytes.
 
         Raises:
-            LinkwrightError: BAG108, the disk refuses; the messages written before can still be played.
+            LinkwrightError: BAG108, the file cannot be written; messages that were written before can still be played.
         """
-        if self._is_ending:  # the ending thread waits for the lock, and a continuous writer might always get it first
+        if self._is_ending:  # let the ending thread acquire the lock, which a continuous writer might always get first
             return
         with self._lock:
             if self._part is None:
@@ -153,10 +154,13 @@ class BagWriter:
                 raise self._ended(error) from error
 
     def take_snapshot(self) -> bool:
-        """Write the messages kept for a snapshot; return whether messages are kept for snapshots.
+        """Write the buffered messages.
+
+        Returns:
+            Whether messages are buffered for snapshots.
 
         Raises:
-            LinkwrightError: BAG108, the disk refuses.
+            LinkwrightError: BAG108, the file cannot be written.
         """
         with self._lock:
             if self._latest is None:
@@ -172,10 +176,10 @@ class BagWriter:
             return True
 
     def split(self) -> None:
-        """Start a new file; this does nothing for a single file or a closed recording.
+        """Start a new file; for a single file or a closed recording, do nothing.
 
         Raises:
-            LinkwrightError: BAG108, the disk refuses.
+            LinkwrightError: BAG108, a file cannot be written.
         """
         with self._lock:
             try:
@@ -184,10 +188,10 @@ class BagWriter:
                 raise self._ended(error) from error
 
     def flush(self) -> None:
-        """Flush the written messages, so that they survive the end of this process, however it ends.
+        """Pass the written messages to the operating system, so that they survive a crash of this process.
 
         Raises:
-            LinkwrightError: BAG108, the disk refuses.
+            LinkwrightError: BAG108, the file cannot be written.
         """
         with self._lock:
             if self._part is None:
@@ -198,12 +202,12 @@ class BagWriter:
                 raise self._ended(error) from error
 
     def close(self) -> None:
-        """Write the index and the metadata.
+        """Write the index and the metadata, and close the files.
 
-        A second call does nothing, and neither does a call after the disk has refused to write.
+        A second call has no effect, and neither has a call after a write error.
 
         Raises:
-            LinkwrightError: BAG108, the disk refuses.
+            LinkwrightError: BAG108, a file cannot be written.
         """
         from linkwright.bag.parts import write_metadata
 
@@ -220,7 +224,7 @@ class BagWriter:
             unfinished.unregister_finished(self)
 
     def finish(self) -> None:
-        """Close the recording from a thread other than the writing one, before the process ends."""
+        """Close the recording before the process ends, from a thread other than the writing thread."""
         self._is_ending = True
         if not self._lock.acquire(timeout=_LONGEST_WRITE):
             return
@@ -276,10 +280,10 @@ class BagWriter:
         self.on_split(str(closed.path), str(self._part.path))
 
     def _ended(self, error: Exception) -> LinkwrightError:
-        """Return the error for a refusal of the disk, and stop writing."""
+        """Stop writing, and return the LinkwrightError for a write error."""
         unfinished.unregister_finished(self)
         part, self._part = self._part, None
-        with contextlib.suppress(*_REFUSALS):  # the disk refuses to write the buffer again
+        with contextlib.suppress(*_REFUSALS):  # closing tries to write the buffer again, which fails again
             if part is not None:
                 part.abort()
         reason = error.strerror if isinstance(error, OSError) else str(error)

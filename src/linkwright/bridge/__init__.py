@@ -1,1 +1,1 @@
-"""Carry topics and services between two networks that have no transport in common, such as DDS and Zenoh."""
+"""Carries topics and services between networks without a common transport, such as DDS and Zenoh."""

@@ -1,7 +1,8 @@
-"""A bridge between two networks, which shows the nodes of each in the other, with their topics and services.
+"""A bridge between two networks, which mirrors the nodes of each network in the other one.
 
-Two bridges between the same networks do not carry the same traffic: nodes of a bridge are recognised by their enclave,
-and traffic that both could carry is carried by the bridge whose id sorts first (decision 0066).
+The mirrored nodes have the same topics and services. Two bridges between the same networks do not carry the same
+traffic: nodes of a bridge are recognised by their enclave, and traffic that both could carry is carried by the bridge
+whose ID sorts first (decision 0066).
 """
 
 from __future__ import annotations
@@ -43,9 +44,9 @@ async def run_bridge(
 
     Args:
         networks: the networks.
-        names: the topics and services to carry.
-        bridge_id: the id of the bridge.
-        log: receives the log.
+        names: selects the topics and services to carry.
+        bridge_id: the ID of the bridge.
+        log: receives log records.
         ready: called once both networks are joined.
 
     Raises:
@@ -87,8 +88,9 @@ async def _carry(first: Side, second: Side, directions: tuple[Direction, Directi
             news.clear()
             first.update()
             second.update()
-            # A service that both sides offer is not carried in either direction, so that no request travels in a
-            # circle.
+            # Withdraw first in both directions: a service that both sides offer must not be carried in either
+            # direction, so that no
+            # request travels in a circle.
             for direction in directions:
                 direction.withdraw()
             for direction in directions:
@@ -99,15 +101,15 @@ async def _carry(first: Side, second: Side, directions: tuple[Direction, Directi
         pause = _SELDOM if all(settled) and loop.time() > unsettled_until else _SOON
         waiting = asyncio.ensure_future(news.wait())
         try:
-            await asyncio.wait((waiting,), timeout=pause)  # `wait_for` of Python 3.11 and older may miss Ctrl-C
+            await asyncio.wait((waiting,), timeout=pause)  # `wait_for` may miss Ctrl-C before Python 3.12
         finally:
             waiting.cancel()
 
 
 def _relevant(log: LogSink) -> LogSink:
-    """Return a sink that drops messages of mirrored nodes, except errors.
+    """Return a log sink that drops the records of mirrored nodes, except errors.
 
-    Mirrored nodes warn of a quality of service that they did not choose.
+    Mirrored nodes warn about a quality of service that they did not choose.
     """
 
     def take(record: LogRecord) -> None:

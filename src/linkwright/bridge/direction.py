@@ -1,4 +1,4 @@
-"""One direction of a bridge: mirror publishers and services of the source network in the target network."""
+"""One direction of a bridge: mirrors the endpoints of the source network in the target network."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ A check comes every 20 ms: on a busy machine the thread that takes messages from
 
 
 class Early(NamedTuple):
-    """A message whose publisher is not known yet.
+    """A message whose publisher has not been discovered yet.
 
     Attributes:
-        until: when it is dropped, by the steady clock.
-        tap: the tap that received it.
-        gid: the gid of its publisher.
-        data: the message.
+        until: the time on the monotonic clock at which the message is dropped, seconds.
+        tap: the tap that received the message.
+        gid: the GID of the message's publisher.
+        data: the message as CDR.
     """
 
     until: float
@@ -49,15 +49,15 @@ class Early(NamedTuple):
 class Direction:
     """Carries messages, requests and responses from a source network to a target network.
 
-    Each node in the source has a node with the same name in the target, with the same publishers and services. Its
-    subscriptions and clients are only announced there, see `Presence`. The bridge's own node subscribes in the source
-    to topics that have subscriptions in the target, and calls the services of the source.
+    Each node in the source has a node with the same name in the target, with the same publishers and services. The
+    subscriptions and clients of the source are only announced in the target, see `Presence`. The bridge's own node
+    subscribes in the source to topics that have subscriptions in the target, and calls the services of the source.
 
     Args:
         source: the network that the traffic comes from.
-        target: the network that it is carried to.
-        names: the topics and services to carry.
-        logger: notifies the user, once for each problem.
+        target: the network that the traffic is carried to.
+        names: selects the topics and services to carry.
+        logger: logs a warning, once for each topic or service that cannot be carried.
     """
 
     def __init__(self, source: Side, target: Side, names: NameFilter, logger: Logger) -> None:
@@ -114,13 +114,13 @@ class Direction:
                 self._services[key] = MirroredService(self._node_of(info), self._source.own, info)
 
     def show(self, back: Direction) -> bool:
-        """Announce the subscriptions and clients of the source in the target; return whether all are announced.
+        """Announce the source's subscriptions and clients in the target; return whether all are announced.
 
-        Publishers there may send a message as soon as they discover a subscription, so the bridge must be listening by
-        then.
+        Publishers in the target may send a message as soon as they discover a subscription. The bridge must therefore
+        have subscribed there by then.
 
         Args:
-            back: the opposite direction, which listens in the target.
+            back: the opposite direction, which subscribes in the target.
         """
         now = time.monotonic()
         for gid in self._unseen.keys() - self._wanted_presences.keys():
@@ -135,11 +135,11 @@ class Direction:
         return not self._unseen
 
     def hears(self, name: str) -> bool:
-        """Return whether the bridge listens to a topic in the source."""
+        """Return whether the bridge subscribes to a topic in the source."""
         return any(stream.name == name for stream in self._taps)
 
     def reaches(self, subscription: EndpointInfo) -> bool:
-        """Return whether a subscription in the target can receive from a publisher that is carried."""
+        """Return whether a mirrored publisher matches a subscription in the target."""
         return any(
             publisher.info.name == subscription.name
             and can_receive(subscription, publisher.info, keyed=self._target.needs_hashes)
@@ -147,7 +147,7 @@ class Direction:
         )
 
     def settle(self) -> bool:
-        """Continue with work that had to wait (messages, removals, matching); return whether all of it is done."""
+        """Continue pending work (messages, removals, matching), and return whether none is left."""
         is_settled = not self._leaving
         self._publish_early()
         self._remove_departed()
@@ -163,12 +163,12 @@ class Direction:
         for publisher in self._publishers.values():
             publisher.close()
 
-    # --- inside ------------------------------------------------------------------------------------------------------
+    # --- internals ---------------------------------------------------------------------------------------------------
 
     def _remove_departed(self) -> None:
-        """Remove empty nodes, and the mirrors of publishers that have left.
+        """Remove the mirrors of publishers that have left, and nodes without mirrors.
 
-        A mirror stays until the last messages of its publisher have been carried.
+        A mirror is removed only when the last messages of its publisher have been carried.
         """
         for gid, quiet in tuple(self._leaving.items()):
             publisher = self._publishers[gid]
@@ -222,7 +222,7 @@ class Direction:
         }
 
     def _is_expected(self, publisher: EndpointInfo) -> bool:
-        """Return whether a subscription in the target can receive from a publisher."""
+        """Return whether a subscription in the target can receive from the mirror of a publisher."""
         demanding = self._target.seen.demanded.get(publisher.name, ())
         return any(can_receive(endpoint, publisher, keyed=self._target.needs_hashes) for endpoint in demanding)
 
@@ -241,11 +241,11 @@ class Direction:
         return False
 
     def _tap(self) -> None:
-        """Subscribe to the streams that have subscriptions in the target.
+        """Subscribe to the streams that have subscriptions in the target, and unsubscribe from others.
 
-        A stream with history is kept until its publishers are gone: if the bridge subscribed again, late joiners would
-        receive it twice. Every possible stream is kept while a topic has no publisher, and while its first publisher is
-        being matched.
+        A stream with history is subscribed to until its publishers have left: if the bridge subscribed again, late
+        joiners would receive the history twice. While a topic has no publisher, and while its first publisher
+        is being matched, every possible stream is subscribed to.
         """
         demanded = self._target.seen.demanded
         wanted = {
@@ -258,13 +258,14 @@ class Direction:
         wanted |= {stream for stream in self._awaited if stream.name not in met}
         for stream in self._taps.keys() - wanted:
             self._taps.pop(stream).close()
-        # A publisher may send as soon as it discovers one of several subscriptions, so create the most widely matching
-        # first.
+        # A publisher may send as soon as it discovers one of several subscriptions, so the subscription that matches
+        # most
+        # publishers is created first.
         for stream in sorted(wanted - self._taps.keys(), key=lambda stream: (stream.history, stream.reliability)):
             self._taps[stream] = Tap(self._source.own, stream, self._carry)
 
     def _carry(self, tap: Tap, data: bytes, info: MessageInfo) -> None:
-        """Carry a message, unless a bridge published it."""
+        """Publish a message in the target, unless a bridge has published it in the source."""
         if not info.from_outside:
             return
         publisher = self._publisher(info.publisher_gid)
@@ -278,12 +279,12 @@ class Direction:
             self._early.append(Early(time.monotonic() + _KNOWN_WITHIN, tap, info.publisher_gid, data))
 
     def _publish_early(self) -> None:
-        """Carry the messages that arrived before their publisher was discovered."""
+        """Publish the queued messages whose publisher has been discovered in the meantime."""
         now = time.monotonic()
         for _ in range(len(self._early)):
             early = self._early.popleft()
             if early.tap is not self._taps.get(early.tap.stream):
-                continue  # no longer listened to, because another bridge carries it
+                continue  # another bridge now carries the stream
             publisher = self._publisher(early.gid)
             if publisher is None and now < early.until:
                 self._early.append(early)
@@ -296,7 +297,10 @@ class Direction:
         return self._publishers.get(self._aliases.get(gid, gid))
 
     def _any_of(self, early: Early) -> MirroredPublisher | None:
-        """Return a mirror for messages whose gid no publisher has announced, as with some programs over Zenoh."""
+        """Return any mirror of the message's stream, or None.
+
+        Over Zenoh, the messages of some programs have a GID that no publisher has announced.
+        """
         for gid, publisher in self._publishers.items():
             if publisher.stream == early.tap.stream:
                 self._aliases[early.gid] = gid

@@ -1,4 +1,4 @@
-"""Select the topics and services that a bridge carries, by patterns for their names.
+"""Selects the topics and services that a bridge carries, by patterns for their names.
 
 A pattern such as ``/robot1`` matches that name and all names below it; ``*`` in a pattern matches any text without a
 slash.
@@ -16,14 +16,14 @@ _ACTION = "/_action/"
 
 
 class NameFilter:
-    """A filter of names.
+    """A filter of topic and service names.
 
     Args:
-        allowed: patterns, at least one of which a name must match; without patterns, all names are allowed.
-        denied: patterns that no name may match, even if it is allowed.
+        allowed: patterns, at least one of which a name must match; if there are none, all names are allowed.
+        denied: patterns that a name must not match, even if it is allowed.
 
     Raises:
-        LinkwrightError: CLI453, a pattern is invalid.
+        LinkwrightError: CLI453, a pattern is not valid.
     """
 
     def __init__(self, allowed: Iterable[str] = (), denied: Iterable[str] = ()) -> None:

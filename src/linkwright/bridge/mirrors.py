@@ -32,8 +32,8 @@ class Tap:
     """The bridge's subscription to a stream.
 
     Args:
-        node: the bridge's own node in the network that it listens to.
-        stream: the stream to listen to.
+        node: the bridge's own node in the network of the stream.
+        stream: the stream to subscribe to.
         take: called with the tap, each message as bytes, and the message's info.
     """
 
@@ -55,7 +55,7 @@ class Tap:
         self._subscription = node.add(subscription)
 
     def has_more(self) -> bool:
-        """Return whether messages are waiting to be handled."""
+        """Return whether received messages have not been handled yet."""
         return self._subscription.has_work()
 
     def close(self) -> None:
@@ -66,15 +66,16 @@ class Tap:
 class MirroredPublisher:
     """Publishes, in one network, the messages of a publisher in the other network.
 
-    Messages wait until a subscription is matched, because existing subscriptions have not discovered the publisher yet.
+    Messages are queued until a subscription is matched, because existing subscriptions have not discovered the
+    publisher yet.
 
     Args:
         node: the bridge's node with the name of the publisher's node.
-        info: the publisher.
-        stream: its stream in its own network.
+        info: the publisher in the other network.
+        stream: the publisher's stream in the other network.
 
     Attributes:
-        expects_listeners: whether a subscription is known that can receive from it.
+        expects_listeners: whether a subscription is known that can receive from the mirror.
     """
 
     def __init__(self, node: NodeHandle, info: EndpointInfo, stream: Stream) -> None:
@@ -101,7 +102,7 @@ class MirroredPublisher:
 
     @property
     def waits(self) -> bool:
-        """Whether its messages are held back until a subscription is matched."""
+        """Whether messages are queued until a subscription is matched."""
         return self._waiting is not None
 
     def put(self, data: bytes) -> None:
@@ -113,7 +114,10 @@ class MirroredPublisher:
             self.settle()
 
     def settle(self) -> bool:
-        """Publish the messages that were held back, if it is time; return whether none is left."""
+        """Publish the queued messages once a subscription is matched, or after a while.
+
+        Return whether the queue is empty. Messages with history are published immediately.
+        """
         if self._waiting is not None and (self.stream.lasts or self.listeners() or self._has_waited()):
             waiting, self._waiting = self._waiting, None
             for data in waiting:
@@ -127,7 +131,7 @@ class MirroredPublisher:
         self._publisher.destroy()
 
     def has_more(self) -> bool:
-        """Return whether messages are waiting to be published."""
+        """Return whether the publisher's thread still has messages to publish."""
         return self._outlet is not None and self._outlet.has_more()
 
     def _has_waited(self) -> bool:
@@ -171,7 +175,7 @@ class MirroredService:
         return self._service is not None
 
     def close(self) -> None:
-        """Remove the service; the network notifies callers that wait for a response that it has left."""
+        """Remove the service; clients that wait for a response are notified by the network."""
         if self._service is not None:
             self._service.destroy()
         self._client.destroy()

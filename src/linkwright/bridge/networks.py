@@ -1,4 +1,4 @@
-"""The networks that a bridge can connect, as written on its command line: ``dds``, ``zenoh``, ``dds:5``."""
+"""The networks that a bridge can connect, as named on the command line: ``dds``, ``dds:5``, ``zenoh``."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ class _Kind:
     """A kind of network.
 
     Attributes:
-        label: its name.
-        why_not: returns the reason why it is not available; empty if it is.
+        label: the name in messages.
+        why_not: returns the reason why this kind is not available, or an empty string if it is.
         open: creates the transport for a domain and a bridge.
         needs_hashes: see `Side`.
     """
@@ -66,14 +66,15 @@ class Network:
 
     @property
     def label(self) -> str:
-        """Its name in messages."""
+        """The name of the network in messages."""
         return f"{_KINDS[self.kind].label} (domain {self.domain_id})"
 
     async def join(self, bridge_id: str, log: LogSink) -> Side:
-        """Join the network.
+        """Join the network, and return the bridge's side in it.
 
         Raises:
-            LinkwrightError: CLI454, its package is not installed; DDS101 to DDS112, it cannot be joined.
+            LinkwrightError: CLI454, the package of the transport is not installed; DDS101 to DDS112, the network cannot
+                be joined.
         """
         kind = _KINDS[self.kind]
         reason = kind.why_not()
@@ -93,10 +94,10 @@ class Network:
 
 
 def read_network(text: str) -> Network:
-    """Return the network that command-line text names.
+    """Return the network that an argument of the command line names.
 
     Raises:
-        LinkwrightError: CLI451, it does not name a network; DDS101, the domain is not valid; DDS121, security is
+        LinkwrightError: CLI451, the text does not name a network; DDS101, the domain is not valid; DDS121, security is
             enforced.
     """
     kind, colon, domain = text.partition(":")
@@ -116,4 +117,4 @@ def read_network(text: str) -> Network:
 
 
 def _ignore_names(_names: frozenset[str]) -> None:
-    """Ignore equal node names, because nodes of a bridge have the names of other nodes on purpose."""
+    """Ignore node names that exist twice, because mirrored nodes have the names of other nodes."""

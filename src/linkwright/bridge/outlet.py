@@ -1,4 +1,4 @@
-"""A queue and a thread for a publisher that may block, so that it does not block the rest of a bridge."""
+"""A queue and a thread for a publisher that may block, so that the rest of a bridge is not blocked."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from linkwright.wire.living_threads import guarded
 class Outlet:
     """Publishes messages in order, in a separate thread.
 
-    A publisher that keeps all messages waits, for seconds, for a subscriber that has stopped; meanwhile the rest of a
-    bridge's traffic continues.
+    A publisher with the history policy keep all blocks, for seconds, if a subscriber has stopped reading. Meanwhile the
+    rest of the bridge's traffic continues.
 
     Args:
         publish: publishes a message.
@@ -37,11 +37,11 @@ class Outlet:
         self._queue.put(data)
 
     def has_more(self) -> bool:
-        """Return whether messages are waiting, or one is being published."""
+        """Return whether messages are queued or being published."""
         return bool(self._queue.unfinished_tasks)
 
     def close(self) -> None:
-        """Stop publishing; waiting messages are lost."""
+        """End the thread after the queued messages, which are discarded if the publisher is destroyed."""
         self._queue.put(None)
 
     def _run(self) -> None:

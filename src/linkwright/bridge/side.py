@@ -22,16 +22,16 @@ Provision = tuple[str, EndpointKind, str, str]
 
 @dataclass
 class Snapshot:
-    """A snapshot of the nodes and endpoints of a network, without those of bridges.
+    """The nodes and endpoints of a network at one time, without those of bridges.
 
     Attributes:
         nodes: the nodes.
         endpoints: the endpoints whose node is known.
         demanded: the subscriptions, by topic.
         served: the names of services that have a server.
-        carried: the endpoints that bridges with precedence carry to this network, which this bridge leaves to them.
-        carried_nodes: the full names of the nodes that those bridges have here for nodes of the other network.
-        by_bridges: the gids of publishers of other bridges.
+        carried: the endpoints that bridges with precedence carry to this network, so that this bridge does not.
+        carried_nodes: the full names of the nodes that those bridges mirror in this network.
+        by_bridges: the GIDs of publishers of other bridges.
     """
 
     nodes: list[NodeIdentity] = field(default_factory=list)
@@ -47,10 +47,10 @@ class Side:
     """One of the two networks of a bridge.
 
     Args:
-        label: its name in messages.
+        label: the name of the network in messages.
         graph: the bridge's graph in this network.
         transport: the transport that connects the graph to the network.
-        bridge_id: the id of the bridge.
+        bridge_id: the ID of the bridge.
         needs_hashes: whether a publisher can be created only if its type, or the hash of its type, is known.
     """
 
@@ -74,21 +74,21 @@ class Side:
                 instead.
 
         Raises:
-            LinkwrightError: DDS102, DDS111, DDS112, it cannot be joined.
+            LinkwrightError: DDS102, DDS111, DDS112, the network cannot be joined.
         """
         while not await asyncio.to_thread(self._transport.wait_until_ready, seconds) and self._transport.waits:
-            pass  # the transport logs the reason for the wait
+            pass  # the transport logs what it is waiting for
         if self._transport.problem is not None:
             raise self._transport.problem
 
     def open_node(self, node: NodeIdentity) -> NodeHandle:
-        """Create a node of the bridge that has only a name."""
+        """Create a node of the bridge that has a name but no endpoints."""
         return self.graph.open_node(NodeIdentity(node.name, node.namespace, self._enclave), Remappings(()))
 
     def watch(self, changed: Callable[[], None]) -> None:
-        """Register a callback for every change of the graph, including killed processes.
+        """Register a callback for every change of the graph, including processes that were killed.
 
-        It is called from any thread.
+        The callback is called from any thread.
         """
         self._transport.watch(changed)
         self._transport.watch_lost(lambda _publisher: changed())
@@ -121,12 +121,12 @@ class Side:
 
 
 def provision_of(endpoint: EndpointInfo) -> Provision:
-    """Return the identity of an endpoint, regardless of its gid."""
+    """Return an identity of an endpoint that does not depend on its GID."""
     assert endpoint.node is not None
     return endpoint.node.full_name, endpoint.kind, endpoint.name, endpoint.type_name
 
 
 def _bridge_of(node: NodeIdentity) -> str:
-    """Return the id of the bridge that a node belongs to; empty for a node that is not a bridge's."""
+    """Return the ID of the bridge that a node belongs to, or an empty string for any other node."""
     root, slash, bridge_id = node.enclave.rpartition("/")
     return bridge_id if slash and root == ENCLAVE else ""

@@ -1,4 +1,4 @@
-"""Streams: the publishers of a topic whose type and quality of service let one subscription receive them all."""
+"""Streams: groups of publishers of a topic that a single subscription can receive from."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ _ASSUMED_DEPTH = 10
 
 
 class Stream(NamedTuple):
-    """A topic with a type and quality of service; one subscription receives from all publishers of a stream.
+    """A topic with a type and a quality of service; one subscription receives from all its publishers.
 
     Attributes:
         name: the topic.
-        type_name: its type.
-        type_hash: the hash of its type; empty if hashes do not separate topics, so that a subscription receives all.
-        reliability: the reliability that its publishers offer.
-        durability: the durability that its publishers offer.
-        history: the history that its publishers offer.
+        type_name: the type of the topic.
+        type_hash: the hash of the type; empty if hashes do not separate topics, so that a subscription receives all.
+        reliability: the reliability that the publishers offer.
+        durability: the durability that the publishers offer.
+        history: the history that the publishers offer.
     """
 
     name: str
@@ -61,11 +61,13 @@ def stream_of(publisher: EndpointInfo, *, keyed: bool) -> Stream:
 
 
 def awaited_streams(subscription: EndpointInfo, *, keyed: bool) -> set[Stream]:
-    """Return the streams of volatile publishers that might reach a subscription; streams with history are added later.
+    """Return the streams of volatile publishers that may still appear and reach a subscription.
+
+    Streams with history are subscribed to only after their publishers have appeared.
 
     Args:
         subscription: the subscription.
-        keyed: see `stream_of`; if it is false, few subscriptions announce their history.
+        keyed: see `stream_of`; if false, few subscriptions announce their history.
     """
     volatile, last = DurabilityPolicy.VOLATILE, HistoryPolicy.KEEP_LAST
     reliable = ReliabilityPolicy.RELIABLE
@@ -78,11 +80,11 @@ def awaited_streams(subscription: EndpointInfo, *, keyed: bool) -> set[Stream]:
 
 
 def can_receive(subscription: EndpointInfo, publisher: EndpointInfo, *, keyed: bool) -> bool:
-    """Return whether a subscription can receive from the mirror of a publisher of its topic.
+    """Return whether a subscription can receive from the mirror of a publisher of the same topic.
 
     Args:
         subscription: the subscription, in the target network.
-        publisher: the publisher, whose offered profile the mirror has.
+        publisher: the publisher in the source network, whose offered profile the mirror has.
         keyed: see `stream_of`, for the target network.
     """
     if subscription.type_name != publisher.type_name:
@@ -93,7 +95,10 @@ def can_receive(subscription: EndpointInfo, publisher: EndpointInfo, *, keyed: b
 
 
 def hash_of(endpoint: EndpointInfo) -> str:
-    """Return the hash of an endpoint's type, as announced or from the package here; empty if neither is available."""
+    """Return the hash of an endpoint's type, or an empty string if it is unknown.
+
+    The hash is the announced one, or that of the type's package here.
+    """
     return endpoint.type_hash or _known_hash(endpoint)
 
 
@@ -112,7 +117,7 @@ def _stream(
     *,
     keyed: bool,
 ) -> Stream:
-    # An endpoint of a type that is not known here may not announce its hash, but it still receives from its publishers.
+    # An endpoint whose type is unknown here may not announce the hash, but still receives from publishers of its type.
     hashed = hash_of(endpoint) if keyed and _known_hash(endpoint) else ""
     return Stream(endpoint.name, endpoint.type_name, hashed, reliability, durability, history)
 

@@ -1,4 +1,4 @@
-"""The command line, with one module per command, which imports other packages only when it runs."""
+"""The command line, with one module per command; each module imports other packages only when it runs."""
 
 from linkwright.cli.entry import main
 

@@ -1,7 +1,4 @@
-"""Replacement of this process by another program.
-
-That program then receives the signals and sets the exit status.
-"""
+"""Replaces this process by another program, which then receives the signals and sets the exit status."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from linkwright.process.interruption import raise_interrupts
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``bridge``."""
     parser.add_argument(
         "networks",
         metavar="NETWORK",

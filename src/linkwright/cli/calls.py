@@ -1,4 +1,4 @@
-"""Calls from a command to the services of running nodes."""
+"""Service calls from a command to running nodes."""
 
 from __future__ import annotations
 
@@ -32,11 +32,12 @@ async def call(
 
     Args:
         session: the session of the command.
-        service_type: such as ``rcl_interfaces/srv/GetParameters``.
+        service_type: the type, such as ``rcl_interfaces/srv/GetParameters``.
         service_name: the absolute name.
-        request: the request.
-        timeout: how long to wait for the response, in seconds; without limit if omitted.
-        longer: how much longer than `APPEARS_WITHIN` to wait for the service, in seconds; the user is informed.
+        request: the request message.
+        timeout: the time to wait for the response, in seconds; None for no limit.
+        longer: the time to wait for the service in addition to `APPEARS_WITHIN`, in seconds; a line on standard error
+            announces this wait.
 
     Raises:
         NoAnswerError: CLI421, the service does not exist; CLI422, it does not respond in time.
@@ -80,7 +81,7 @@ async def call(
 
 
 def node_names(session: Session, *, hidden: bool = False) -> list[str]:
-    """Return the full names of the nodes, sorted; duplicate names are repeated."""
+    """Return the sorted full names of the nodes; a name that several nodes share is repeated."""
     from linkwright.graph.names.rules import is_hidden, join
 
     found = (join(namespace, name) for name, namespace in session.node.get_node_names_and_namespaces())

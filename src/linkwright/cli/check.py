@@ -1,4 +1,4 @@
-"""``linkwright check``: check robots and worlds, and print their contents and the findings."""
+"""``linkwright check``: check robots and worlds, and print their structure and the findings."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ _DEFAULTS: dict[str, Any] = {
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``check``."""
     parser.add_argument(
         "words",
         metavar="FILE|FOLDER|NAME:=VALUE",
@@ -83,17 +83,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def without_options(words: list[str]) -> SimpleNamespace | None:
-    """Return the arguments of a command line that has only files, folders and values.
-
-    The result is None if it has none of them.
-    """
+    """Return the parsed arguments of a command line without options, or None if it is empty."""
     return SimpleNamespace(words=words, **_DEFAULTS) if words else None
 
 
 def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
-    """Check the files.
+    """Check the files, and return 1 if there are errors, or warnings with ``--strict``.
 
-    The tree and machine-readable findings are written to standard output, text to standard error.
+    The tree and machine-readable findings are written to standard output, findings as text to standard error.
     """
     paths = [Path(word) for word in arguments.words if ":=" not in word]
     if not paths:
@@ -141,7 +138,7 @@ def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
 
 
 def _contents(checked: Checked) -> str:
-    """Return a summary of a file: the tree of a robot's links, or the models in a world."""
+    """Return the tree of a robot's links or the list of a world's models; empty if neither was read."""
     if checked.robot is not None:
         from linkwright.urdf import tree_text
 
@@ -154,7 +151,11 @@ def _contents(checked: Checked) -> str:
 
 
 def _check(paths: Sequence[Path], checker: Checker, *, around: bool) -> tuple[list[Diagnostic], Checked | None]:
-    """Return all findings without duplicates, and the result of the file if only one was named."""
+    """Return all findings without duplicates, and the parsed file if the only path is a file.
+
+    Raises:
+        LinkwrightError: CLI302, the paths contain nothing to check.
+    """
     from linkwright.lint.targets import find_targets
 
     targets = find_targets(paths, around=around)
@@ -172,7 +173,7 @@ def _check(paths: Sequence[Path], checker: Checker, *, around: bool) -> tuple[li
 
 
 def _unknown_selector(words: Iterable[str]) -> str | None:
-    """Return the finding about a selector that selects nothing, or None."""
+    """Return the usage error for the first selector that matches no rule, or None."""
     from linkwright.lint.selector_words import is_selector, selector_hint
 
     for word in words:
@@ -212,7 +213,7 @@ def _print_diff(fixed: Sequence[FixResult]) -> int:
 
 def _print(found: Sequence[Diagnostic], form: str, *, everything: bool) -> None:
     if form == "text":
-        with suppress(OSError):  # as in `print_message`
+        with suppress(OSError):  # a failure to write must not change the exit status, as in `print_message`
             print_diagnostics(found if everything else group_similar(found), sys.stderr)
     else:
         sys.stdout.write(format_diagnostics(found, form))

@@ -1,4 +1,4 @@
-"""The ``linkwright`` command: finds and runs the verb, and reports errors.
+"""The ``linkwright`` command: finds and runs the subcommand, and reports errors.
 
 Exit statuses: 0 success, 1 findings or an error in the user's input, 2 wrong usage, 3 a bug of ours, 130 interrupted.
 """
@@ -75,8 +75,8 @@ def main(words: Sequence[str] | None = None, *, program: str = PROGRAM) -> int:
     """Run the command line and return its exit status; never raises an exception.
 
     Args:
-        words: the command line after the program's name; by default that of this process.
-        program: the program's name in usage lines, such as ``ros2``; empty if the command is the program.
+        words: the arguments after the program's name; None for the arguments of this process.
+        program: the program's name in usage lines, such as ``ros2``; empty if the subcommand is itself a program.
     """
     whole_process = words is None
     if whole_process:
@@ -87,7 +87,7 @@ def main(words: Sequence[str] | None = None, *, program: str = PROGRAM) -> int:
         set_language(None)
         if whole_process:
             end_at_once()
-            gc.freeze()  # Python would collect garbage once more before it exits
+            gc.freeze()  # freeze all objects, so that Python skips its last garbage collection at exit
 
 
 def _collect_seldom() -> None:
@@ -100,7 +100,7 @@ def _collect_seldom() -> None:
 
 
 def groups() -> dict[str, dict[str, str]]:
-    """Return the help texts of the installed commands by group, in the order of the help."""
+    """Return the installed commands by group, each with its help text, in the order of the help."""
     workbench = _workbench()
     others: dict[str, dict[str, str]] = {} if workbench is None else workbench.GROUPS
     engine = {**others.get(_ENGINE_GROUP, {}), **COMMANDS}
@@ -113,9 +113,9 @@ def help_texts() -> dict[str, str]:
 
 
 def _workbench() -> Any:
-    """Return the table of commands other than the engine's.
+    """Return the module that lists the commands of ``linkwright``.
 
-    The result is None if only linkwright-core is installed.
+    The result is None if only ``linkwright-core`` is installed.
     """
     try:
         return import_module("linkwright.cli.workbench")
@@ -129,7 +129,12 @@ def verb(name: str) -> Verb:
 
 
 def parser_for(name: str, *, program: str = PROGRAM) -> argparse.ArgumentParser:
-    """Return the argument parser of a command, for the command itself and the command reference."""
+    """Return the argument parser of a command.
+
+    Args:
+        name: the name of the command.
+        program: the program's name in usage lines; empty if the command is itself a program.
+    """
     from linkwright.cli.parsers import make_parser  # importing argparse takes as long as expanding a small file
 
     module = verb(name)
@@ -164,16 +169,20 @@ def _dispatch(words: list[str], program: str) -> int:
 
 
 def _without_options(module: Verb, words: list[str]) -> argparse.Namespace | None:
-    """Parse a command line without options, without an argparse parser; None if that is not possible.
+    """Parse a command line without creating an argparse parser, which is slow.
 
-    Returns None if the command cannot read them without a parser.
+    Returns:
+        The arguments, or None if the line contains options or the command needs argparse.
     """
     known: Callable[[list[str]], argparse.Namespace | None] | None = getattr(module, "without_options", None)
     return None if known is None or any(word.startswith("-") for word in words) else known(words)
 
 
 def _parsed(name: str, module: Verb, words: list[str], program: str, *, in_order: bool) -> argparse.Namespace | int:
-    """Return the parsed arguments of a command line, or the exit status for an unknown subcommand."""
+    """Parse a command line with argparse, and return the arguments.
+
+    If the subcommand is unknown, report it and return the exit status instead.
+    """
     parser = parser_for(name, program=program)
     below: Mapping[str, SubVerb] = getattr(module, "VERBS", {})
     if below:
@@ -186,7 +195,7 @@ def _parsed(name: str, module: Verb, words: list[str], program: str, *, in_order
 
 
 def _unknown(name: str, known: Iterable[str], prog: str) -> int:
-    """Report an unknown command or option."""
+    """Report an unknown command or option, and return the exit status for wrong usage."""
     hint = did_you_mean(name, known) or f"`{prog} --help` lists the commands"
     if _workbench() is None:
         hint += "; linkwright-core is installed alone, and linkwright has more commands"

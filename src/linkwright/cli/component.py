@@ -32,7 +32,7 @@ _APPEARS_WITHIN = 1.0
 
 
 def configure_list(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``component list``."""
     add_session_arguments(parser)
     parser.add_argument(
         "container_node_name", metavar="CONTAINER", nargs="?", help="list only the nodes of this container"
@@ -59,7 +59,7 @@ def run_list(arguments: argparse.Namespace) -> int:
 
 
 def configure_types(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``component types``."""
     parser.add_argument("package_name", metavar="PACKAGE", nargs="?", help="list only the components of this package")
 
 
@@ -87,7 +87,7 @@ def run_types(arguments: argparse.Namespace) -> int:
 
 
 def configure_load(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``component load``."""
     add_session_arguments(parser)
     parser.add_argument("container_node_name", metavar="CONTAINER", help="the container, such as /ComponentManager")
     add_component_arguments(parser)
@@ -95,7 +95,7 @@ def configure_load(parser: argparse.ArgumentParser) -> None:
 
 
 def run_load(arguments: argparse.Namespace) -> int:
-    """Load a component, and print the number and name of its node."""
+    """Load a component, and print the unique ID and the name of its node."""
 
     async def job(session: Session) -> int:
         container = await find_container(session, arguments.container_node_name)
@@ -110,7 +110,7 @@ def run_load(arguments: argparse.Namespace) -> int:
 
 
 def configure_unload(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``component unload``."""
     add_session_arguments(parser)
     parser.add_argument("container_node_name", metavar="CONTAINER", help="the container, such as /ComponentManager")
     parser.add_argument(
@@ -120,7 +120,7 @@ def configure_unload(parser: argparse.ArgumentParser) -> None:
 
 
 def run_unload(arguments: argparse.Namespace) -> int:
-    """Unload the components."""
+    """Unload components from a container."""
 
     async def job(session: Session) -> int:
         container = await find_container(session, arguments.container_node_name)
@@ -133,7 +133,7 @@ def run_unload(arguments: argparse.Namespace) -> int:
 
 
 def configure_standalone(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``component standalone``."""
     add_session_arguments(parser)
     add_component_arguments(parser)
     parser.add_argument(
@@ -142,7 +142,11 @@ def configure_standalone(parser: argparse.ArgumentParser) -> None:
 
 
 def run_standalone(arguments: argparse.Namespace) -> int:
-    """Run the component until the user interrupts it, and return the container's exit status."""
+    """Run a component in a container of its own until the user interrupts the command.
+
+    Returns:
+        The container's exit status.
+    """
     name = arguments.container_node_name or f"standalone_container_{os.urandom(6).hex()}"
 
     async def job(session: Session) -> int:
@@ -156,7 +160,7 @@ def run_standalone(arguments: argparse.Namespace) -> int:
 
 @asynccontextmanager
 async def _container_process(name: str) -> AsyncIterator[Process]:
-    """Run a process with an empty container while the context is entered."""
+    """Run a process with an empty container for the duration of the context."""
     words = ("-m", "linkwright.node_program", "rclcpp_components", "component_container")
     process = await asyncio.create_subprocess_exec(sys.executable, *words, "--ros-args", "-r", f"__node:={name}")
     try:
@@ -175,9 +179,9 @@ async def _container_process(name: str) -> AsyncIterator[Process]:
 
 
 def containers(session: Session) -> list[str]:
-    """Return the sorted full names of the containers.
+    """Return the sorted full names of the component containers.
 
-    A container is a node with all three services of containers.
+    A container is a node with the three services for loading, unloading and listing components.
     """
     services = dict(session.node.get_service_names_and_types())
     return [
@@ -207,16 +211,16 @@ async def find_container(session: Session, name: str, timeout: float = _APPEARS_
 
 
 async def held_nodes(session: Session, container: str) -> list[tuple[int, str]]:
-    """Return the numbers and full names of the nodes in a container."""
+    """Return the unique ID and the full name of each node in a container."""
     response = await _call(session, container, "list_nodes")
     return [(int(uid), str(name)) for uid, name in zip(response.unique_ids, response.full_node_names, strict=True)]
 
 
 async def _load_component(session: Session, container: str, arguments: argparse.Namespace) -> tuple[int, str]:
-    """Let a container load a component; return the node's number and full name.
+    """Load a component into a container; return the unique ID and the full name of its node.
 
     Raises:
-        LinkwrightError: CLI433, the container could not load it.
+        LinkwrightError: CLI433, the container could not load the component.
     """
     response = await _call(
         session,
@@ -242,10 +246,10 @@ async def _load_component(session: Session, container: str, arguments: argparse.
 
 
 async def _unload_component(session: Session, container: str, uid: int) -> None:
-    """Let a container unload a node.
+    """Unload a node from a container.
 
     Raises:
-        LinkwrightError: CLI434, the container could not unload it.
+        LinkwrightError: CLI434, the container could not unload the node.
     """
     response = await _call(session, container, "unload_node", unique_id=uid)
     if not response.success:

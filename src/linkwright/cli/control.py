@@ -1,4 +1,4 @@
-"""``linkwright control``: the controllers and the hardware of ros2_control's controller manager.
+"""``linkwright control``: list and change the controllers and hardware of a controller manager.
 
 Source: ros2controlcli (verbs, options, output without colours).
 """
@@ -180,7 +180,7 @@ def _save(text: str) -> None:
 
 
 def _diagram(controllers: Sequence[Any]) -> str:
-    """Return a diagram with controllers and hardware as boxes, and interfaces between them as arrows."""
+    """Return a Graphviz diagram of controllers and hardware, connected by their interfaces."""
     names = {controller.name for controller in controllers}
     lines = ["digraph g {", "rankdir=LR;", "node [shape=box, style=rounded];"]
     lines += [f'"{name}";' for name in sorted(names)]

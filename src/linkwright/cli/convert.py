@@ -25,7 +25,7 @@ _GROUP = "linkwright.model_formats"
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``convert``."""
     parser.add_argument("file", metavar="FILE", help="the URDF, xacro or SDF file")
     add_values(parser, values_help="values for the file's <xacro:arg>")
     parser.add_argument("-o", "--output", metavar="OUT", help="the file to write (default: standard output)")
@@ -53,7 +53,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Write or print the converted file; findings go to standard error."""
+    """Convert a file, write or print the result, and return 1 if there are errors.
+
+    Findings are printed to standard error.
+    """
     from linkwright.descriptions.conversion import as_sdf
     from linkwright.descriptions.service import is_world
     from linkwright.packages import PackageFinder
@@ -76,7 +79,7 @@ def run(arguments: argparse.Namespace) -> int:
     )
     print_diagnostics(converted.diagnostics, sys.stderr)
     if converted.sdf is None or (arguments.to != "sdf" and has_errors(converted.diagnostics)):
-        return 1  # write a robot or a MuJoCo model completely or not at all
+        return 1  # a URDF or MJCF file must be complete, so write nothing if there are errors
     text, remarks = write(converted.sdf, finder)
     print_diagnostics(remarks, sys.stderr)
     if text is None:
@@ -106,7 +109,7 @@ def _urdf(sdf: Sdf, _finder: PackageFinder) -> tuple[str | None, Sequence[Diagno
 
 
 def _writer(form: str) -> Writer:
-    """Return the function that writes a format.
+    """Return the function that writes a file format.
 
     Raises:
         LinkwrightError: CLI323, the package that provides the format is not installed.

@@ -1,6 +1,6 @@
-"""``linkwright daemon``: accepted for scripts that start and stop ros2's daemon.
+"""``linkwright daemon``: does nothing, for scripts that start and stop ros2's daemon.
 
-Linkwright has none.
+Linkwright does not have a daemon.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ _ANSWERS = {
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``daemon``."""
     parser.add_argument(
         "verb",
         metavar="{start,status,stop}",

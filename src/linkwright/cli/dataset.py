@@ -23,7 +23,7 @@ _KEPT = ("lights", "colours", "lens")
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``dataset``."""
     parser.add_argument("worlds", metavar="WORLD", nargs="+", help="SDF files, or names of worlds")
     parser.add_argument("--output", "-o", metavar="DIR", required=True, help="the folder of the dataset")
     parser.add_argument(
@@ -163,7 +163,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 class _Progress:
-    """A progress line, which is printed only to a terminal."""
+    """The progress line of a data set, which is printed only to a terminal."""
 
     def __init__(self, count: int) -> None:
         self._count = count

@@ -14,14 +14,14 @@ _FORMATS = (".pdf", ".svg", ".png")
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``diagram``."""
     parser.usage = "linkwright diagram [-h] FILE [OUT] [NAME:=VALUE ...]"
     parser.add_argument("file", metavar="FILE", help="the URDF or xacro file")
     parser.add_argument(
         "words",
         metavar="OUT",
         nargs="*",
-        default=[],  # without a default, argparse lists them as missing, too
+        default=[],  # without a default, argparse reports the optional words as missing arguments, too
         help="base name of the two files, default the robot's name; the extension .pdf, .svg or .png selects "
         "the format of the drawing. Arguments NAME:=VALUE are values for the file's <xacro:arg>",
     )

@@ -15,7 +15,7 @@ SAME, DIFFERENT, TROUBLE = 0, 1, 2
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``diff``."""
     parser.add_argument("file", metavar="OLD", help="the URDF or xacro file; with --against, the new one")
     add_values(
         parser,

@@ -23,7 +23,7 @@ _SECONDS = 3.0
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``doctor``."""
     parser.add_argument(
         "--seconds",
         metavar="SECONDS",
@@ -64,9 +64,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Observe the graph, and print the findings; return 1 if something needs a fix.
+    """Observe the graph, print the findings, and return 1 if a finding needs a fix.
 
-    If a subcommand is given, run it instead.
+    If a subcommand is given, run the subcommand instead.
     """
     if "run_verb" in arguments:
         return run_nested(arguments)
@@ -74,7 +74,7 @@ def run(arguments: argparse.Namespace) -> int:
     from linkwright.wire.unfollowed import new_unsupported_settings
 
     frames = _fixed_frames(arguments)
-    settings = new_unsupported_settings()  # reported with the other findings, not when joining the graph
+    settings = new_unsupported_settings()  # reported as findings, not when joining the graph
 
     async def job(session: Session) -> int:
         if arguments.format == "text":

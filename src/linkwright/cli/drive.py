@@ -33,7 +33,7 @@ _KINDS = ("differential", "skid", "ackermann", "mecanum", "joints")
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``drive``."""
     add_model(parser)
     parser.add_argument(
         "--world", metavar="WORLD", default="empty", help="the world: a file or a name (default: a plane)"
@@ -62,9 +62,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Infer the missing elements, then drive the robot, or print or write the elements.
+    """Infer the missing elements; then drive the robot, or print or write the elements.
 
-    Returns 1 if the description has errors.
+    Returns:
+        The exit status, which is 1 if the description has errors.
     """
     from linkwright.descriptions import examine
     from linkwright.hosting.plans import HostOptions
@@ -100,7 +101,7 @@ def run(arguments: argparse.Namespace) -> int:
         print_diagnostics(written.refused, sys.stderr)
         return 1 if written.refused else 0
     load_mujoco()
-    load_world(arguments.world)  # report a missing world immediately, not in the middle of a log
+    load_world(arguments.world)  # report a missing world before the simulation starts to log
     print_diagnostics(
         [diagnostic for diagnostic in found.diagnostics if diagnostic.severity is not Severity.INFO], sys.stderr
     )
@@ -119,7 +120,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _summary(robot: Robot, found: Inference) -> Phrase:
-    """Return a one-line summary of the inferred facts."""
+    """Return a one-line summary of the inferred elements."""
     drive = found.drive
     parts: list[Phrase] = []
     if drive is not None and drive.left:
@@ -141,7 +142,7 @@ def _summary(robot: Robot, found: Inference) -> Phrase:
 
 
 def _listed(found: Inference) -> str:
-    """Return a text that lists each inference with its place, message and added elements."""
+    """Return a text that lists each inference with its file, line, message and added elements."""
     from linkwright.xmltree.patches import block
 
     lines: list[str] = []

@@ -1,4 +1,4 @@
-"""The output format of ``topic echo`` and ``service echo``: options, and messages as text."""
+"""The output format of ``topic echo`` and ``service echo``."""
 
 from __future__ import annotations
 
@@ -21,7 +21,9 @@ _TRUNCATE = 128
 def add_format_arguments(parser: argparse.ArgumentParser, *, flow_help: str) -> None:
     """Declare the format options that `EchoFormat.of` reads.
 
-    `flow_help` is the help text of ``--flow-style``.
+    Args:
+        parser: the parser of the command.
+        flow_help: the help text of ``--flow-style``.
     """
     parser.add_argument("--csv", action="store_true", help="print the values separated by commas")
     parser.add_argument("-f", "--full-length", action="store_true", help="do not truncate long arrays and strings")
@@ -64,7 +66,13 @@ class EchoFormat:
     def of(
         cls, arguments: argparse.Namespace, field: tuple[str, ...] = (), *, message_info: bool = False
     ) -> EchoFormat:
-        """Return the format that the arguments of `add_format_arguments` set."""
+        """Return the format that the command line requests.
+
+        Args:
+            arguments: the parsed options of `add_format_arguments`.
+            field: the path of the field to print; empty for the entire message.
+            message_info: whether to print the times of publication and reception.
+        """
         return cls(
             field=field,
             csv=arguments.csv,
@@ -76,7 +84,7 @@ class EchoFormat:
         )
 
     def text(self, message: Any, info: MessageInfo | None = None) -> str:
-        """Return the text to print for a message or its bytes.
+        """Format a message, given as an object or as bytes.
 
         Raises:
             LinkwrightError: CLI414, the message has no such field.
@@ -106,7 +114,7 @@ class EchoFormat:
 
 
 def field_path(text: str | None) -> tuple[str, ...]:
-    """Return the path given with ``--field``, such as ``pose.pose.position``, as names.
+    """Split the value of ``--field``, such as ``pose.pose.position``, into field names.
 
     Raises:
         LinkwrightError: CLI414, a name is missing between dots.
@@ -124,7 +132,7 @@ def field_path(text: str | None) -> tuple[str, ...]:
 
 
 def select(message: Any, path: Sequence[str]) -> Any:
-    """Return the field of a message at a path of names.
+    """Return the value of the field that a path of names denotes.
 
     Raises:
         LinkwrightError: CLI414, there is no such field.

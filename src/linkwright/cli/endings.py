@@ -1,4 +1,4 @@
-"""The end of a command, where errors are turned into one message and an exit status."""
+"""The last step of every command, which turns an error into a message and an exit status."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def status_of(command: Callable[[], int]) -> int:
     """Run a command, flush its output and return its exit status.
 
     Args:
-        command: the function to run, which returns the status unless it raises.
+        command: the function to run; errors that it raises are printed and determine the status.
     """
     try:
         open_closed_streams()
@@ -51,7 +51,7 @@ def status_of(command: Callable[[], int]) -> int:
         return FINDINGS
     except KeyboardInterrupt:
         return INTERRUPTED
-    except BrokenPipeError:  # the reader of the output exited (`| head`)
+    except BrokenPipeError:  # the program that reads the output has exited, such as `head`
         _leave_output()
         return FINE
     except MemoryError:
@@ -70,8 +70,8 @@ def status_of(command: Callable[[], int]) -> int:
 def open_closed_streams() -> None:
     """Open null devices for standard streams that were closed when the process was started.
 
-    Otherwise files that are opened later would get their file descriptors. Reading returns nothing, writing to the
-    output fails, and messages are discarded.
+    Otherwise files that are opened later would get the file descriptors of these streams. Standard input is then empty,
+    messages are discarded, and writing to standard output fails.
     """
     if sys.stdin is None:
         sys.stdin = _open_as(0, os.O_RDONLY, "r")
@@ -92,7 +92,7 @@ def _open_as(number: int, flags: int, mode: str) -> object:
 def _trouble_of_the_system(error: OSError) -> Diagnostic | None:
     """Return the diagnostic for an error of the operating system, or None for a bug of ours."""
     reason = foreign(error.strerror or error)
-    # Code that writes files names the file in its errors, so an error without a name concerns the output.
+    # Functions that write files name the file in the error, so an error without a file name concerns standard output.
     if error.filename is None and error.errno in _OF_OUTPUT:
         _leave_output()
         return Diagnostic("CLI202", phrase("cannot write to standard output: {reason}", reason=reason))
@@ -112,11 +112,11 @@ def _trouble_of_the_system(error: OSError) -> Diagnostic | None:
 
 
 def _leave_output() -> None:
-    """Redirect the output to the null device.
+    """Redirect standard output to the null device.
 
     Otherwise Python would report a second error when it exits.
     """
-    from contextlib import suppress  # imported here: slow to import, and rarely needed
+    from contextlib import suppress  # imported here, because the import is slow and rarely needed
 
     with suppress(OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -131,7 +131,7 @@ def _print(diagnostics: Iterable[Diagnostic]) -> None:
 
 def print_message(text: str) -> None:
     """Print a line to standard error; a failure to write does not change the exit status."""
-    from contextlib import suppress  # imported here: slow to import, and rarely needed
+    from contextlib import suppress  # imported here, because the import is slow and rarely needed
 
     with suppress(OSError):
         print(text, file=sys.stderr, flush=True)

@@ -1,6 +1,6 @@
 """The entry point of the command line.
 
-It first lets Ctrl-C end the process quietly, before anything else is imported.
+Before anything else is imported, it makes Ctrl-C end the process without a traceback.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ def main(words: list[str] | None = None, *, program: str = "linkwright") -> int:
     """Run the command line; see `linkwright.cli.command.main`.
 
     Args:
-        words: the command line after the program's name; by default that of this process.
+        words: the arguments after the program's name; None for the arguments of this process.
         program: the program's name in usage lines.
 
     Returns:

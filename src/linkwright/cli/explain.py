@@ -1,4 +1,4 @@
-"""``linkwright explain``: explain a rule or another diagnostic, an element or an attribute."""
+"""``linkwright explain``: explain a rule, another diagnostic, an element or an attribute."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from linkwright.diagnostics.translation import localized
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``explain``."""
     parser.add_argument(
         "code",
         metavar="CODE|ELEMENT",
@@ -18,7 +18,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print the explanation."""
+    """Print the explanation of a rule, diagnostic, element or attribute."""
     from linkwright.lint.explain import find_page, nearest_codes
     from linkwright.urdf.vocabulary import meanings, names
 

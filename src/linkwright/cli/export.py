@@ -1,4 +1,4 @@
-"""``linkwright export``: write a robot as one HTML file that opens anywhere, or as glTF."""
+"""``linkwright export``: write a robot as one self-contained HTML file, or as glTF."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``export``."""
     parser.add_argument(
         "out",
         metavar="OUT",
@@ -66,7 +66,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _write(arguments: argparse.Namespace, pair: Pair | None) -> int:
-    """Write the file for one description, or for a comparison of two."""
+    """Export one description or a comparison of two, and return the exit status."""
     from linkwright.descriptions import DescriptionLibrary, examine
     from linkwright.descriptions.pairs import text_of_old
     from linkwright.packages import PackageFinder
@@ -85,7 +85,7 @@ def _write(arguments: argparse.Namespace, pair: Pair | None) -> int:
     text = library.store(description)
     print_diagnostics(description.diagnostics, sys.stderr)
     if description.robot is None or not description.robot.root:
-        return 1  # without a root link, nothing can be placed
+        return 1  # without a root link, no link has a pose
     snapshot = snapshot_of_model(text, description.robot, library, finder, old)
     print_diagnostics(snapshot.problems, sys.stderr)
     data = export_snapshot(snapshot, arguments.out.rpartition(".")[2].lower())
@@ -97,9 +97,9 @@ def _write(arguments: argparse.Namespace, pair: Pair | None) -> int:
 
 
 def _from_outside(files: Sequence[Path]) -> Diagnostic:
-    """Return a warning about exported files outside packages.
+    """Return a warning about exported files that are not in a package.
 
-    Includes and ``file://`` can reach any file.
+    Includes and ``file://`` URIs can refer to any file on the computer.
     """
     message = counted(
         "the export contains a file from outside the packages",

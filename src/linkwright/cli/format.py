@@ -20,7 +20,7 @@ _CHANGES = 1
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``format``."""
     parser.add_argument(
         "paths",
         metavar="FILE|FOLDER",
@@ -68,7 +68,10 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _format_file(file: Path, arguments: argparse.Namespace, *, dry_run: bool) -> bool | None:
-    """Format a file, and return whether it changes; None if it is not XML, or cannot be read or written."""
+    """Format a file, and return whether its contents change.
+
+    The result is None if the file is not XML, or cannot be read or written.
+    """
     try:
         return _format_and_report(file, arguments, dry_run=dry_run)
     except LinkwrightError as error:
@@ -116,7 +119,7 @@ def _formatted(text: str, file: Path, arguments: argparse.Namespace, name: str |
 
 
 def _style(file: Path, arguments: argparse.Namespace) -> Style:
-    """Return the style of the settings for a file, with that of the command line."""
+    """Return the formatting style from the settings file, overridden by the command line."""
     from linkwright.lint.configuration import settings_for
 
     settings, diagnostics = settings_for(file)
@@ -133,12 +136,12 @@ def _summarise(changed: int, others: int, *, dry_run: bool) -> None:
         parts.append(counted("{count} file formatted", "{count} files formatted", changed))
     if others:
         parts.append(counted("{count} file left unchanged", "{count} files left unchanged", others))
-    if parts:  # not if each file has an error
+    if parts:  # there is nothing to summarise if every file has an error
         print_message(localized(joined(parts)))
 
 
 def _lines(text: str) -> tuple[int, int]:
-    """Parse a range of lines, and return the first one and the one behind the last, from 0.
+    """Parse a range of lines such as ``10-20`` to a 0-based, half-open range.
 
     Raises:
         argparse.ArgumentTypeError: the text is not such a range.

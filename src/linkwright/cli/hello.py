@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``doctor hello``."""
     parser.add_argument(
         "-t", "--topic", default="/canyouhearme", help="the topic to publish greetings on (default: %(default)s)"
     )
@@ -97,7 +97,7 @@ class _Listener(asyncio.DatagramProtocol):
 
 
 def _warn_about_range() -> None:
-    """Warn if the topic does not leave this computer, which is the default."""
+    """Print a warning if the topic does not leave this computer, which is the default."""
     from linkwright.wire.dds.settings import Range, read_settings
     from linkwright.wire.joining import middleware
     from linkwright.wire.unfollowed import CYCLONE

@@ -1,4 +1,4 @@
-"""``linkwright inertia``: compute the mass properties of links from their shapes."""
+"""``linkwright inertia``: compute the mass properties of links from their geometry."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _LARGEST = 1e15
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``inertia``."""
     add_model(parser)
     parser.add_argument(
         "--density",
@@ -59,7 +59,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print or write the blocks; return 1 for errors in the description or unwritten blocks."""
+    """Print or write the ``<inertial>`` elements of the links.
+
+    Returns:
+        1 if the description has errors or an element could not be written, otherwise 0.
+    """
     from linkwright.descriptions import examine
     from linkwright.inertia import MeshLibrary, estimate
     from linkwright.inertia.reports import as_json, as_text
@@ -118,7 +122,7 @@ def _positive(text: str) -> float:
 
 
 def _selected_links(names: Sequence[str], robot: Robot) -> list[str]:
-    """Return the selected links, in file order.
+    """Return the selected links in file order, or all links if none is selected.
 
     Raises:
         LinkwrightError: CLI311, the robot does not have a selected link.
@@ -130,10 +134,10 @@ def _selected_links(names: Sequence[str], robot: Robot) -> list[str]:
 
 
 def _masses(words: Sequence[str], robot: Robot) -> dict[str, float]:
-    """Return the masses by link from arguments such as ``arm=1.5``.
+    """Parse arguments such as ``arm=1.5``, and return the mass in kg of each link.
 
     Raises:
-        LinkwrightError: CLI311, the robot does not have a link; CLI312, an argument has no mass.
+        LinkwrightError: CLI311, the robot does not have such a link; CLI312, an argument has no mass.
     """
     masses: dict[str, float] = {}
     wrong = []
@@ -163,7 +167,7 @@ def _unknown(name: str, robot: Robot) -> Diagnostic:
 
 
 def _refusals(refused: Mapping[str, str], robot: Robot) -> list[Diagnostic]:
-    """Return a finding for each block that was not written."""
+    """Return a finding for each ``<inertial>`` element that could not be written."""
     found = []
     for name, why in refused.items():
         element = robot.links[name].element

@@ -1,4 +1,4 @@
-"""``linkwright interface``: the types of messages, services and actions."""
+"""``linkwright interface``: list and show the types of messages, services and actions."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ def _add_kind_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _kinds(arguments: argparse.Namespace) -> list[str]:
-    """Return the requested kinds (``msg``, ``srv``, ``action``), or all by default."""
+    """Return the requested kinds (``msg``, ``srv``, ``action``), or all kinds if none is requested."""
     return [kind for kind in _TITLES if getattr(arguments, kind)] or list(_TITLES)
 
 
 def configure_list(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``interface list``."""
     _add_kind_arguments(parser)
 
 
@@ -47,7 +47,7 @@ def run_list(arguments: argparse.Namespace) -> int:
 
 
 def configure_packages(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``interface packages``."""
     _add_kind_arguments(parser)
 
 
@@ -61,7 +61,7 @@ def run_packages(arguments: argparse.Namespace) -> int:
 
 
 def configure_package(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``interface package``."""
     parser.add_argument("package_name", metavar="PACKAGE", help="the package, such as example_interfaces")
     _add_kind_arguments(parser)
 
@@ -85,7 +85,7 @@ def run_package(arguments: argparse.Namespace) -> int:
 
 
 def configure_show(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``interface show``."""
     group = parser.add_mutually_exclusive_group()
     group.add_argument("--all-comments", action="store_true", help="also print the comments of nested types")
     group.add_argument("--no-comments", action="store_true", help="omit comments and blank lines")
@@ -116,15 +116,15 @@ def run_show(arguments: argparse.Namespace) -> int:
 
 
 def configure_proto(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``interface proto``."""
     parser.add_argument("type", metavar="TYPE", help="the type, such as std_msgs/msg/String")
     parser.add_argument("--no-quotes", action="store_true", help="omit the quotes around the message")
 
 
 def run_proto(arguments: argparse.Namespace) -> int:
-    """Print a message with its defaults, as ros2 does.
+    """Print a message with its default values, as ros2 does.
 
-    For a service this is the request, for an action the goal.
+    For a service, this is the request; for an action, the goal.
     """
     from linkwright.messages import prototype
 
@@ -136,13 +136,13 @@ def run_proto(arguments: argparse.Namespace) -> int:
 def definition_lines(
     name: str, source: Callable[[str], str], *, comments: bool = True, nested_comments: bool = False
 ) -> Iterator[str]:
-    """Return the lines of a definition.
+    """Yield the lines of an interface definition, with nested definitions indented.
 
     Args:
-        name: ``package/kind/Name``.
-        source: returns the text of the interface file for a name.
-        comments: whether to keep comments and blank lines.
-        nested_comments: whether to keep them in nested definitions.
+        name: the type, as ``package/kind/Name``.
+        source: returns the text of the interface file of a type.
+        comments: whether to include comments and blank lines.
+        nested_comments: whether to include the comments and blank lines of nested definitions.
     """
     yield from _lines(name, source, comments, nested_comments, 0)
 
@@ -162,9 +162,9 @@ def _lines(name: str, source: Callable[[str], str], comments: bool, nested_comme
 
 
 def nested_type(line: str, package: str) -> str | None:
-    """Return the full message type of the field in a line of a definition.
+    """Return the full name of the message type in a line that declares a field.
 
-    The result is None if the field has no message type.
+    The result is None if the line does not declare a field of a message type.
     """
     found = _FIELD.match(line)
     if found is None or found["equals"] or found["type"] in _PRIMITIVES:
@@ -178,7 +178,7 @@ def nested_type(line: str, package: str) -> str | None:
 
 
 def _without_comment(line: str) -> str:
-    """Return a line without its comment; a ``#`` in a string does not start one."""
+    """Return a line without its comment; a ``#`` in a string does not start a comment."""
     quote = ""
     for at, character in enumerate(line):
         if quote:

@@ -1,4 +1,4 @@
-"""The option ``--lang`` of every command, and help texts in the user's language."""
+"""The option ``--lang`` of every command, and the translation of help texts."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ _OPTION = "--lang"
 
 
 class UnknownLanguageError(Exception):
-    """Raised when ``--lang`` lacks a language, or names one without a translation."""
+    """Raised when ``--lang`` has no value, or names a language without a translation."""
 
 
 def take_language(words: Sequence[str]) -> list[str]:
-    """Set the language, and return the words without ``--lang LANGUAGE``.
+    """Apply the option ``--lang LANGUAGE``, and return the arguments without it.
 
     The option is accepted anywhere before ``--``.
 
     Raises:
-        UnknownLanguageError: there is no such language.
+        UnknownLanguageError: there is no translation into this language.
     """
     left: list[str] = []
     requested: str | None = None
@@ -49,7 +49,7 @@ def _language(written: str) -> str:
 
 
 def translate_help(text: str) -> str:
-    """Return a help text in the user's language; texts that are not in the catalogue stay unchanged."""
+    """Return a help text in the user's language, or unchanged if the catalogue does not contain it."""
     lang = language()
     if lang == "en" or not text:
         return text

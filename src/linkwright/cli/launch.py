@@ -10,7 +10,7 @@ from linkwright.cli.view import add_viewer_options
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``launch``."""
     parser.usage = "linkwright launch [options] (PACKAGE FILE | PATH) [NAME:=VALUE ...]"
     parser.add_argument(
         "words",
@@ -57,7 +57,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run the launch file until it ends."""
+    """Run the launch file until it ends, and return the exit status."""
     from linkwright import standins
     from linkwright.launch import LaunchOptions, parse_launch_words, print_description, run_launch, show_arguments
     from linkwright.shell.programs import offer_programs, offer_ros_variables

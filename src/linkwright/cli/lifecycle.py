@@ -1,4 +1,4 @@
-"""``linkwright lifecycle``: the managed nodes of the running graph, their states and transitions."""
+"""``linkwright lifecycle``: list managed nodes, and query and change their states."""
 
 from __future__ import annotations
 
@@ -37,14 +37,14 @@ def _add_node_arguments(parser: argparse.ArgumentParser, *, optional: bool = Fal
 
 
 def configure_nodes(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``lifecycle nodes``."""
     add_session_arguments(parser)
     parser.add_argument("-a", "--all", action="store_true", help="list hidden nodes as well")
     add_count_argument(parser, "node")
 
 
 def run_nodes(arguments: argparse.Namespace) -> int:
-    """Print the full names of the nodes."""
+    """Print the full names of the managed nodes."""
 
     async def job(session: Session) -> int:
         print_names(managed_nodes(session, hidden=arguments.all), arguments)
@@ -54,13 +54,13 @@ def run_nodes(arguments: argparse.Namespace) -> int:
 
 
 def configure_get(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``lifecycle get``."""
     _add_node_arguments(parser, optional=True)
     parser.add_argument("--timeout", metavar="SECONDS", type=positive_float, help="how long to wait for each response")
 
 
 def run_get(arguments: argparse.Namespace) -> int:
-    """Print the current states of nodes, as ros2 does."""
+    """Print the current state of one or all managed nodes, as ros2 does."""
 
     async def job(session: Session) -> int:
         hidden = arguments.include_hidden_nodes
@@ -86,7 +86,7 @@ def run_get(arguments: argparse.Namespace) -> int:
 
 
 def configure_list(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``lifecycle list``."""
     _add_node_arguments(parser)
     parser.add_argument(
         "-a", "--all", action="store_true", help="list the transitions of all states, not only of the current state"
@@ -94,7 +94,7 @@ def configure_list(parser: argparse.ArgumentParser) -> None:
 
 
 def run_list(arguments: argparse.Namespace) -> int:
-    """Print the available transitions, as ros2 does."""
+    """Print the transitions of a node that are available now or, with ``--all``, in any state."""
 
     async def job(session: Session) -> int:
         node = await find_node(session, arguments.node_name, hidden=arguments.include_hidden_nodes)
@@ -106,7 +106,7 @@ def run_list(arguments: argparse.Namespace) -> int:
 
 
 def configure_set(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``lifecycle set``."""
     _add_node_arguments(parser)
     parser.add_argument(
         "transition", metavar="TRANSITION", help="the transition's name, such as configure, or its number"
@@ -114,7 +114,7 @@ def configure_set(parser: argparse.ArgumentParser) -> None:
 
 
 def run_set(arguments: argparse.Namespace) -> int:
-    """Trigger the transition, and print whether it succeeded."""
+    """Trigger a transition, and print whether the transition succeeded."""
 
     async def job(session: Session) -> int:
         node = await find_node(session, arguments.node_name, hidden=arguments.include_hidden_nodes)
@@ -148,7 +148,7 @@ def run_set(arguments: argparse.Namespace) -> int:
 def managed_nodes(session: Session, *, hidden: bool = False) -> list[str]:
     """Return the sorted full names of the managed nodes.
 
-    A managed node is a node with a service for its state.
+    A managed node is a node with a ``get_state`` service.
     """
     services = dict(session.node.get_service_names_and_types())
     names = dict.fromkeys(node_names(session, hidden=hidden))
@@ -156,7 +156,11 @@ def managed_nodes(session: Session, *, hidden: bool = False) -> list[str]:
 
 
 async def state(session: Session, node: str, timeout: float | None = None) -> Any:
-    """Return the state (lifecycle_msgs/msg/State) of a node."""
+    """Return the current state of a managed node (lifecycle_msgs/msg/State).
+
+    Raises:
+        NoAnswerError: the service does not exist, or does not respond within `timeout` seconds.
+    """
     from linkwright.messages import get_service
 
     request = get_service(_GET_STATE).Request()
@@ -164,9 +168,9 @@ async def state(session: Session, node: str, timeout: float | None = None) -> An
 
 
 async def transitions(session: Session, node: str, *, every: bool = False) -> Sequence[Any]:
-    """Return the transitions of a node's state, or of all states.
+    """Return the available transitions of a managed node, or those of all states if `every` is set.
 
-    They are lifecycle_msgs/msg/TransitionDescription messages.
+    The result consists of lifecycle_msgs/msg/TransitionDescription messages.
     """
     from linkwright.messages import get_service
 
@@ -178,7 +182,7 @@ async def transitions(session: Session, node: str, *, every: bool = False) -> Se
 
 
 async def change(session: Session, node: str, transition: Any) -> bool:
-    """Trigger a lifecycle_msgs/msg/Transition of a node, and return whether it succeeded."""
+    """Trigger a transition (lifecycle_msgs/msg/Transition), and return whether it succeeded."""
     from linkwright.messages import get_service
 
     kind = "lifecycle_msgs/srv/ChangeState"
@@ -189,7 +193,7 @@ async def change(session: Session, node: str, transition: Any) -> bool:
 
 
 def transition_lines(descriptions: Sequence[Any]) -> list[str]:
-    """Return the output lines of ``lifecycle list``."""
+    """Return the lines that ``lifecycle list`` prints for transitions."""
     lines = []
     for description in descriptions:
         lines += [

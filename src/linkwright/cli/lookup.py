@@ -1,4 +1,4 @@
-"""Lookup of graph names that a user gives, with suggestions of similar names for unknown ones."""
+"""Lookup of graph names given by the user, with suggestions for unknown names."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ _POLL = 0.1
 
 
 def visible(found: NamesAndTypes, *, hidden: bool) -> list[tuple[str, list[str]]]:
-    """Return names with their types, sorted; hidden names are included only if `hidden` is true."""
+    """Return names with their types, sorted by name and without hidden names unless `hidden` is set."""
     from linkwright.graph.names.rules import is_hidden
 
     return [(name, list(types)) for name, types in sorted(found) if hidden or not is_hidden(name)]
 
 
 def absolute(name: str) -> str:
-    """Return a name with a leading slash, as in the graph.
+    """Return a graph name with a leading slash.
 
     Raises:
         InvalidNameError: the name is not valid.
@@ -40,10 +40,10 @@ def unknown_name_error(code: str, message: Phrase, name: str, known: Iterable[st
 
     Args:
         code: the code of the diagnostic.
-        message: the message, which is that of ros2 if it has one.
+        message: the message, with ros2's wording if ros2 has a message for this error.
         name: the name that the user gave.
-        known: the existing names.
-        nothing: the hint if no name is similar.
+        known: the existing names, for suggestions.
+        nothing: the hint if no existing name is similar.
     """
     candidates = list(known)
     by_end = [candidate for candidate in candidates if candidate.endswith("/" + name.strip("/").rpartition("/")[2])]
@@ -54,7 +54,7 @@ def unknown_name_error(code: str, message: Phrase, name: str, known: Iterable[st
 
 
 def absolute_or_given(name: str) -> str:
-    """Return a name with a leading slash, whether it is valid or not."""
+    """Return a name with a leading slash, without checking whether the name is valid."""
     return name if name.startswith("/") else f"/{name}"
 
 
@@ -91,14 +91,14 @@ async def topic_type(
 
     Args:
         session: the session of the command.
-        name: the absolute name.
-        given: the name of the type, if the user gave it.
-        wait: see `topic_types`.
-        raw: whether only the bytes of messages are needed; in that case the name of an unknown type is returned.
+        name: the absolute name of the topic.
+        given: the name of the type, if the user specified one.
+        wait: whether to wait for a topic that does not exist yet.
+        raw: whether the command needs only serialized messages. For an unknown type, the result is then its name.
 
     Raises:
-        LinkwrightError: MSG101, there is no such type; CLI411, as for `topic_types`; CLI412, the topic has several
-            types.
+        LinkwrightError: MSG101, there is no such type; CLI411, there is no such topic, and `wait` is not set; CLI412,
+            the topic has several types.
     """
     if given is not None:
         return _message_class(given, raw=raw)

@@ -14,7 +14,7 @@ _LOOPBACK = "127.0.0.1"
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``lsp``."""
     way = parser.add_mutually_exclusive_group()
     way.add_argument("--stdio", action="store_true", help="use standard input and output (the default)")
     way.add_argument("--tcp", metavar="PORT", type=int, help="listen on this port of 127.0.0.1 for a connection")
@@ -22,7 +22,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Serve an editor until it ends the connection."""
+    """Serve an editor until the connection is closed."""
     try:
         from linkwright.lsp.features import make_server
     except ModuleNotFoundError as error:
@@ -35,6 +35,6 @@ def run(arguments: argparse.Namespace) -> int:
         server.start_ws(_LOOPBACK, arguments.ws)
     else:
         with os.fdopen(os.dup(0), "rb") as requests, os.fdopen(os.dup(1), "wb") as answers:
-            sys.stdout = sys.stderr  # nothing else may be written between the answers
+            sys.stdout = sys.stderr  # standard output carries only the responses
             server.start_io(requests, answers)
     return FINE

@@ -1,7 +1,4 @@
-"""The arguments of commands for descriptions.
-
-These are the file, xacro arguments, and the description to compare with.
-"""
+"""The command-line arguments that select one or two descriptions, and their xacro arguments."""
 
 from __future__ import annotations
 
@@ -16,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def add_model(parser: argparse.ArgumentParser) -> None:
-    """Declare the argument `file` for a robot's description, and `values` for its xacro arguments."""
+    """Declare `file`, the description of a robot, and `values`, the values of its xacro arguments."""
     parser.add_argument("file", metavar="FILE", help="the URDF or xacro file")
     add_values(parser, values_help="values for the file's <xacro:arg>")
 
@@ -24,16 +21,20 @@ def add_model(parser: argparse.ArgumentParser) -> None:
 def add_values(
     parser: argparse.ArgumentParser, *, values_help: str, name: str = "values", metavar: str = "NAME:=VALUE"
 ) -> None:
-    """Declare any number of arguments ``name:=value``.
+    """Declare a positional argument that takes any number of words ``name:=value``.
 
-    The help states whether other words may be among them.
+    Args:
+        parser: the parser of the command.
+        values_help: the help text, which states whether other words are accepted as well.
+        name: the attribute for the words.
+        metavar: the name of the argument in the help.
     """
-    nothing: list[str] = []  # without a default, argparse lists them as missing, too
+    nothing: list[str] = []  # without a default, argparse reports the optional words as missing arguments, too
     parser.add_argument(name, metavar=metavar, nargs="*", default=nothing, help=values_help)
 
 
 def add_second_model(parser: argparse.ArgumentParser) -> None:
-    """Declare `words`, for a second file and values for both files, and the option `pair_with_commit`."""
+    """Declare `words`, a second file and values for both files, and the option ``--against``."""
     add_values(
         parser,
         values_help="a second file to compare FILE with, the new one, and NAME:=VALUE for <xacro:arg>",
@@ -44,7 +45,7 @@ def add_second_model(parser: argparse.ArgumentParser) -> None:
 
 
 def add_against(parser: argparse.ArgumentParser) -> None:
-    """Declare the option for the commit to compare a description with."""
+    """Declare the option ``--against``, which names the commit to compare a description with."""
     parser.add_argument(
         "--against",
         metavar="COMMIT",
@@ -54,16 +55,16 @@ def add_against(parser: argparse.ArgumentParser) -> None:
 
 def names_file(word: str) -> bool:
     """Return whether a word names a file, as opposed to ``name:=value`` or a mistyped ``name=value``."""
-    from pathlib import Path  # imported late: the frequent command `xacro` needs only the declarations above
+    from pathlib import Path  # imported late, because the frequent command `xacro` needs only the functions above
 
     return ":=" not in word and ("=" not in word or Path(word).exists())
 
 
 def asked_pair(arguments: argparse.Namespace, stack: ExitStack) -> Pair | None:
-    """Return the two descriptions to compare; None if the command line does not name two.
+    """Return the two descriptions to compare, or None if the command line does not specify two.
 
     Args:
-        arguments: `file`, `words` and `pair_with_commit`.
+        arguments: the parsed arguments `file`, `words` and `against`.
         stack: receives the resources to close.
 
     Raises:

@@ -22,12 +22,12 @@ _MEGA = 1_000_000
 
 
 def configure_list(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``models list``."""
     parser.add_argument("--json", action="store_true", help="print all properties of each model as a JSON list")
 
 
 def run_list(arguments: argparse.Namespace) -> int:
-    """Print the available models, and whether they are downloaded."""
+    """Print the available models, and whether each is downloaded."""
     from linkwright.model_files import is_installed, model_table, models_folder
 
     if arguments.json:
@@ -57,7 +57,7 @@ def run_list(arguments: argparse.Namespace) -> int:
 
 
 def configure_get(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``models get``."""
     _add_name(parser)
     parser.add_argument(
         "--from",
@@ -116,12 +116,12 @@ def _progress(entry: ModelEntry, done: int, total: int | None) -> Phrase:
 
 
 def configure_path(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``models path``."""
     _add_name(parser)
 
 
 def run_path(arguments: argparse.Namespace) -> int:
-    """Print the path of a model."""
+    """Print the path of a downloaded model."""
     from linkwright.model_files import find_model, model_entry
 
     print(find_model(model_entry(arguments.name)))
@@ -129,12 +129,12 @@ def run_path(arguments: argparse.Namespace) -> int:
 
 
 def configure_check(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``models check``."""
     parser.add_argument("names", metavar="MODEL", nargs="*", help="the models' names (default: all downloaded models)")
 
 
 def run_check(arguments: argparse.Namespace) -> int:
-    """Verify the checksums of models."""
+    """Verify the checksums of downloaded models."""
     from linkwright.model_files import find_model, is_installed, model_entry, model_table
 
     entries = [model_entry(name) for name in arguments.names]
@@ -160,12 +160,12 @@ def _wrong_with(entry: ModelEntry, place: Path) -> Sequence[Diagnostic]:
 
 
 def configure_remove(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``models remove``."""
     _add_name(parser)
 
 
 def run_remove(arguments: argparse.Namespace) -> int:
-    """Remove a model."""
+    """Remove a downloaded model."""
     from linkwright.model_files import model_entry, remove
 
     print(localized(phrase("Removed {path}", path=remove(model_entry(arguments.name)))))
@@ -186,10 +186,10 @@ VERBS = {
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the subcommands."""
+    """Declare the subcommands of ``models``."""
     configure_nested(parser, VERBS)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run the subcommand."""
+    """Run the requested subcommand."""
     return run_nested(arguments)

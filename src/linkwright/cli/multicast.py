@@ -15,12 +15,12 @@ _LONGEST_TTL = 0xFF
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the subcommands of ``multicast``."""
     configure_nested(parser, VERBS)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run the subcommand."""
+    """Run the requested subcommand."""
     return run_nested(arguments)
 
 
@@ -28,7 +28,7 @@ def multicast_group(text: str) -> str:
     """Parse the IPv4 address of a multicast group.
 
     Raises:
-        argparse.ArgumentTypeError: the text is not valid.
+        argparse.ArgumentTypeError: the text is not such an address.
     """
     try:
         is_group = IPv4Address(text).is_multicast
@@ -43,16 +43,16 @@ def port(text: str) -> int:
     """Parse a UDP port.
 
     Raises:
-        argparse.ArgumentTypeError: the text is not valid.
+        argparse.ArgumentTypeError: the text is not a port number.
     """
     return _up_to(_LAST_PORT, text)
 
 
 def time_to_live(text: str) -> int:
-    """Parse an IP TTL.
+    """Parse the time to live of IP packets.
 
     Raises:
-        argparse.ArgumentTypeError: the text is not valid.
+        argparse.ArgumentTypeError: the text is not a valid time to live.
     """
     return _up_to(_LONGEST_TTL, text)
 
@@ -65,7 +65,7 @@ def _up_to(most: int, text: str) -> int:
 
 
 def add_ttl_argument(parser: argparse.ArgumentParser) -> None:
-    """Declare the option ``--ttl``."""
+    """Declare the option ``--ttl``, the time to live of multicast packets."""
     parser.add_argument(
         "--ttl", type=time_to_live, help="TTL of the datagrams (default: 1, which routers do not forward)"
     )

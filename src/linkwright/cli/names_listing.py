@@ -1,4 +1,4 @@
-"""Common parts of the commands that list graph names with their types."""
+"""The common code of commands that list graph names with their types."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ class Kind:
     """A kind of graph names with types: topics, services or actions.
 
     Attributes:
-        found: returns the existing names.
+        found: returns the existing names with their types.
         code: the code of the error for an unknown name.
-        missing: the message of that error for a name that the user gave.
-        hint: the hint of that error if no name is similar.
+        missing: returns the message of the error for a given name.
+        hint: the hint of the error if no existing name is similar.
     """
 
     found: Callable[[Session], NamesAndTypes]
@@ -33,7 +33,7 @@ class Kind:
     hint: Phrase
 
     def types_of(self, session: Session, given: str, *, hidden: bool = True) -> list[str]:
-        """Return the types of the name on the command line.
+        """Return the types of a name from the command line.
 
         Raises:
             LinkwrightError: with `code`, the name does not exist.
@@ -46,7 +46,7 @@ class Kind:
         return found[name]
 
     def print_types(self, arguments: argparse.Namespace, given: str, *, hidden: bool = True) -> int:
-        """Print the types of the name on the command line, one per line, and return the exit status."""
+        """Print the types of a name from the command line, one per line, and return the exit status."""
         absolute(given)  # reject an invalid name before joining the graph
 
         async def job(session: Session) -> int:
@@ -56,7 +56,7 @@ class Kind:
         return run_in_graph(arguments, job, only_looks=True)
 
     def print_of_type(self, arguments: argparse.Namespace, wanted: str, *, hidden: bool) -> int:
-        """Print the names that have the given type, and return the exit status."""
+        """Print the names that have the type `wanted`, and return the exit status."""
 
         async def job(session: Session) -> int:
             found = visible(self.found(session), hidden=hidden)
@@ -67,12 +67,12 @@ class Kind:
 
 
 def add_types_argument(parser: argparse.ArgumentParser, *, types_help: str) -> None:
-    """Declare ``--show-types`` with a help text."""
+    """Declare the option ``--show-types``."""
     parser.add_argument("-t", "--show-types", action="store_true", help=types_help)
 
 
 def add_count_argument(parser: argparse.ArgumentParser, kind: str) -> None:
-    """Declare ``--count``, for topics, services, actions or nodes."""
+    """Declare the option ``--count``, which prints the number of names of a kind."""
     parser.add_argument(
         "-c",
         f"--count-{kind}s",
@@ -84,7 +84,7 @@ def add_count_argument(parser: argparse.ArgumentParser, kind: str) -> None:
 
 
 def add_hidden_argument(parser: argparse.ArgumentParser, option: str, *, hidden_help: str) -> None:
-    """Declare ``--include-hidden-topics`` or a similar option.
+    """Declare an option that includes hidden names, such as ``--include-hidden-topics``.
 
     The option is also accepted before the subcommand.
     """
@@ -99,12 +99,12 @@ def add_hidden_argument(parser: argparse.ArgumentParser, option: str, *, hidden_
 
 
 def print_names(names: Sequence[str], arguments: argparse.Namespace) -> None:
-    """Print names, one per line, or only their number."""
+    """Print names, one per line, or only their number if ``--count`` is given."""
     for line in [len(names)] if arguments.count else names:
         print(line)
 
 
 def print_names_and_types(found: NamesAndTypes, arguments: argparse.Namespace) -> None:
-    """Print names, with their types if requested, or only their number, as ros2 does."""
+    """Print names as ros2 does: with their types if requested, or only their number."""
     lines = [f"{name} [{', '.join(types)}]" if arguments.show_types else name for name, types in found]
     print_names(lines, arguments)

@@ -1,4 +1,4 @@
-"""Commands with subcommands, such as ``topic echo``, all configured below one parser."""
+"""Commands with subcommands, such as ``topic echo``, each with an argument parser of its own."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ class SubVerb(NamedTuple):
     Attributes:
         configure: declares the arguments.
         run: runs the subcommand and returns the exit status.
-        help: the help text, in one line.
+        help: the one-line help text.
     """
 
     configure: Callable[[argparse.ArgumentParser], None]
@@ -37,7 +37,7 @@ def configure_nested(parser: argparse.ArgumentParser, verbs: Mapping[str, SubVer
 
 
 def run_nested(arguments: argparse.Namespace) -> int:
-    """Run the subcommand; if there is none, print the help as ros2 does."""
+    """Run the requested subcommand, or print the help as ros2 does if none is requested."""
     run = getattr(arguments, "run_verb", None)
     if run is None:
         arguments.print_help()

@@ -1,4 +1,4 @@
-"""``linkwright node``: the nodes of the running graph."""
+"""``linkwright node``: list and describe the nodes of the running graph."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _APPEARS_WITHIN = 1.0
 
 
 def configure_list(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``node list``."""
     add_session_arguments(parser)
     parser.add_argument("-a", "--all", action="store_true", help="list hidden nodes as well")
     add_count_argument(parser, "node")
@@ -47,7 +47,7 @@ def run_list(arguments: argparse.Namespace) -> int:
 
 
 def configure_info(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``node info``."""
     add_session_arguments(parser)
     parser.add_argument("node_name", metavar="NODE", help="the node, such as /robot_state_publisher")
     parser.add_argument("--include-hidden", action="store_true", help="also show hidden topics, services and actions")

@@ -1,4 +1,4 @@
-"""Writing of the result files of commands."""
+"""Writes the result files of commands."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def write_output(path: Path, content: str | bytes) -> None:
-    """Write a result file completely or not at all, and create its folder if necessary.
+    """Write a result file atomically, and create its folder if necessary.
 
     Raises:
         LinkwrightError: CLI201, the file cannot be written.

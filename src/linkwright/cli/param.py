@@ -1,4 +1,4 @@
-"""``linkwright param``: the parameters of running nodes."""
+"""``linkwright param``: read and change the parameters of running nodes."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _USAGE = 2
 
 
 def _add_node_arguments(parser: argparse.ArgumentParser, *, optional: bool = False) -> None:
-    """Declare the arguments for the node and for the time to wait for it."""
+    """Declare the arguments for the node and for the timeout."""
     add_session_arguments(parser)
     if optional:
         parser.add_argument(
@@ -58,7 +58,7 @@ def _add_node_arguments(parser: argparse.ArgumentParser, *, optional: bool = Fal
 
 
 def configure_list(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``param list``."""
     _add_node_arguments(parser, optional=True)
     parser.add_argument(
         "--param-prefixes", metavar="PREFIX", nargs="+", default=[], help="list only parameters with these prefixes"
@@ -68,7 +68,7 @@ def configure_list(parser: argparse.ArgumentParser) -> None:
 
 
 def run_list(arguments: argparse.Namespace) -> int:
-    """Print the names of parameters, grouped below the name of their node."""
+    """Print the names of parameters, grouped by node."""
     try:
         pattern = re.compile(arguments.filter or "")
     except re.error as error:
@@ -120,7 +120,7 @@ async def _listed(parameters: RemoteParameters, arguments: argparse.Namespace, w
 
 
 def configure_get(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``param get``."""
     _add_node_arguments(parser)
     parser.add_argument("parameter_name", metavar="NAME", help="the parameter's name")
     parser.add_argument("--hide-type", action="store_true", help="print only the value")
@@ -145,7 +145,7 @@ def run_get(arguments: argparse.Namespace) -> int:
 
 
 def configure_describe(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``param describe``."""
     _add_node_arguments(parser)
     parser.add_argument("parameter_names", metavar="NAME", nargs="+", help="the parameters' names")
 
@@ -164,7 +164,7 @@ def run_describe(arguments: argparse.Namespace) -> int:
 
 
 def _description(descriptor: Any) -> list[str]:
-    """Return the lines that describe a rcl_interfaces/msg/ParameterDescriptor."""
+    """Return the output lines of ``param describe`` for a rcl_interfaces/msg/ParameterDescriptor."""
     lines = [f"Parameter name: {descriptor.name}", f"  Type: {TYPE_NAMES.get(descriptor.type, 'unknown')}"]
     if descriptor.description:
         lines.append(f"  Description: {descriptor.description}")
@@ -181,7 +181,7 @@ def _description(descriptor: Any) -> list[str]:
 
 
 def configure_set(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``param set``."""
     _add_node_arguments(parser)
     parser.add_argument(
         "words", metavar="NAME VALUE", nargs="+", help="a parameter's name and its value in YAML; may be repeated"
@@ -190,7 +190,7 @@ def configure_set(parser: argparse.ArgumentParser) -> None:
 
 
 def run_set(arguments: argparse.Namespace) -> int:
-    """Set the parameters, and print whether each was set."""
+    """Set parameters of a node, and print for each whether it was set."""
     words = arguments.words
     if len(words) % 2:
         text = f"Parameters must be provided as name/value pairs: name value [name value ...]. Got {len(words)} word(s)"
@@ -214,7 +214,7 @@ def run_set(arguments: argparse.Namespace) -> int:
 
 
 def configure_delete(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``param delete``."""
     _add_node_arguments(parser)
     parser.add_argument("parameter_name", metavar="NAME", help="the parameter's name")
 
@@ -235,7 +235,7 @@ def run_delete(arguments: argparse.Namespace) -> int:
 
 
 def configure_dump(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``param dump``."""
     _add_node_arguments(parser)
     parser.add_argument(
         "--output-dir", metavar="FOLDER", help="write the file NODE.yaml to this folder instead of printing it"
@@ -246,7 +246,7 @@ def configure_dump(parser: argparse.ArgumentParser) -> None:
 
 
 def run_dump(arguments: argparse.Namespace) -> int:
-    """Print the parameters of a node as a parameter file, or write them to one."""
+    """Print the parameters of a node in the format of a parameter file, or write them to a file."""
 
     async def job(session: Session) -> int:
         from linkwright.graph.parameters.files import parameter_file_text, plain_value
@@ -268,7 +268,7 @@ def run_dump(arguments: argparse.Namespace) -> int:
 
 
 def configure_load(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``param load``."""
     _add_node_arguments(parser)
     parser.add_argument("parameter_file", metavar="FILE", help="a YAML file of parameters")
     parser.add_argument(
@@ -280,7 +280,7 @@ def configure_load(parser: argparse.ArgumentParser) -> None:
 
 
 def run_load(arguments: argparse.Namespace) -> int:
-    """Set the parameters in a parameter file, and print whether each was set."""
+    """Set the parameters in a parameter file, and print for each whether it was set."""
     from linkwright.graph.parameters.files import read_parameter_file
     from linkwright.graph.parameters.parameter import Parameter
 

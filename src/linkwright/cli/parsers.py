@@ -1,4 +1,4 @@
-"""The argument parsers of commands, which extend argparse with hints and translation."""
+"""The argument parsers of commands, which extend argparse with suggestions and translation."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ def make_parser(
 
 
 class _Parser(argparse.ArgumentParser):
-    """Suggests options for misspelt ones, and reports help texts that cannot be written.
+    """An argument parser that suggests similar options and raises the errors of printing help.
 
-    argparse ignores errors in writing the help; from version 3.15 on, Python does, too.
+    argparse ignores errors when it prints the help, as does Python from version 3.15 on.
     """
 
     def error(self, message: str) -> NoReturn:
-        """Print a usage error, and end the process."""
+        """Print a usage error with a suggestion for a misspelt option, and end the process."""
         meant = None
         unrecognised = translate_help("unrecognized arguments: %s").removesuffix("%s")
         if message.startswith(f"{unrecognised}-"):
@@ -63,7 +63,7 @@ def _options_below(parser: argparse.ArgumentParser) -> Iterator[str]:
 def _formatter(prog: str) -> argparse.HelpFormatter:
     """Return a help formatter as wide as the terminal.
 
-    argparse would import many modules to get the width.
+    To determine the width itself, argparse would import many modules.
     """
     try:
         columns = int(os.environ.get("COLUMNS", "0")) or os.get_terminal_size().columns
@@ -72,8 +72,8 @@ def _formatter(prog: str) -> argparse.HelpFormatter:
     return argparse.HelpFormatter(prog, width=columns - 2)
 
 
-# Replace the function with which argparse translates its own texts, such as "the following arguments are required". The
-# default is gettext's function, which searches for catalogues that do not exist and imports `locale` to do so.
+# Replace the function with which argparse translates its own messages, such as "the following arguments are required".
+# argparse uses gettext by default, which searches for catalogues that do not exist and imports `locale` to do so.
 argparse._ = translate_help  # type: ignore[attr-defined]  # argparse imports it so
 
 

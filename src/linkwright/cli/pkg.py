@@ -1,4 +1,4 @@
-"""``linkwright pkg``: create ROS packages, and find and describe existing ones."""
+"""``linkwright pkg``: create ROS packages, and find and describe installed ones."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class _ListLicenses(argparse.Action):
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the subcommands of ``pkg``."""
     from linkwright.packages.creation.request import BUILD_TYPES, DEFAULT_DESCRIPTION, DEFAULT_LICENSE
 
     verbs = parser.add_subparsers(dest="verb", metavar="COMMAND", required=True, title="commands")
@@ -94,13 +94,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run the subcommand."""
+    """Run the requested subcommand."""
     answer: Callable[[argparse.Namespace], int] = arguments.answer
     return answer(arguments)
 
 
 def _create(arguments: argparse.Namespace) -> int:
-    """Create the package, and print each step as ``ros2 pkg create`` does."""
+    """Create a package, and print each step as ``ros2 pkg create`` does."""
     from linkwright.packages.creation.create import create_package
     from linkwright.packages.creation.request import PackageRequest
 
@@ -123,9 +123,9 @@ def _create(arguments: argparse.Namespace) -> int:
 
 
 def _maintainer(name: str | None, email: str | None) -> Maintainer:
-    """Return the maintainer.
+    """Return the maintainer of the new package.
 
-    Missing parts are taken from git's configuration or else from the login name.
+    A missing name or address is taken from git's configuration, or else derived from the login name.
     """
     from linkwright.packages.creation.request import Maintainer
     from linkwright.packages.naming import is_email
@@ -134,17 +134,14 @@ def _maintainer(name: str | None, email: str | None) -> Maintainer:
     if not name:
         name = _git("user.name") or login
     if not email:
-        # git may generate an address without a domain, which colcon would reject
+        # reject an address without a domain, which git may generate and colcon does not accept
         configured = _git("user.email")
         email = configured if is_email(configured) else f"{_address_part(login)}@todo.todo"
     return Maintainer(name, email)
 
 
 def _git(key: str) -> str:
-    """Return a value of git's configuration.
-
-    The result is empty if there is no git or no such value.
-    """
+    """Return a value of git's configuration, or an empty string if the value or git is missing."""
     try:
         result = subprocess.run(  # noqa: S603 - fixed words, no shell
             ["git", "config", key],  # noqa: S607 - the user's own git, found as the shell finds it
@@ -164,7 +161,7 @@ def _login() -> str:
 
     try:
         return getpass.getuser()
-    except (OSError, KeyError, ImportError):  # in a container, a user ID may have no name
+    except (OSError, KeyError, ImportError):  # in a container, a user ID need not have a name
         return "user"
 
 

@@ -1,7 +1,4 @@
-"""The options ``--qos-...`` of ``topic echo``, ``pub`` and others.
-
-They set a QoS profile.
-"""
+"""The options ``--qos-...`` of ``topic echo``, ``topic pub`` and others, which set a QoS profile."""
 
 from __future__ import annotations
 
@@ -107,11 +104,12 @@ def profile(arguments: argparse.Namespace) -> QoSProfile:
 
 
 def fitting_profile(node: Node, topic: str, arguments: argparse.Namespace) -> QoSProfile:
-    """Return the QoS profile to subscribe with.
+    """Return the QoS profile of a subscription that is compatible with the topic's publishers.
 
-    It has the values of the options, or else the strictest that all publishers offer. As in ros2cli, it is reliable and
-    transient local if all publishers are, so that a message published once is shown. The default queue is longer than
-    ros2's, so that a burst is counted and shown completely.
+    If the options set a policy, the profile is that of the options. Otherwise each policy is the strictest that all
+    publishers offer: as in ros2cli, the subscription is reliable and transient local if all publishers are, so that a
+    message that was published once is shown. The default queue is longer than ros2's, so that no message of a burst is
+    dropped.
     """
     from linkwright.graph.qos.compatibility import fit
 

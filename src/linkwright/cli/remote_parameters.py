@@ -1,7 +1,4 @@
-"""The parameters of a running node, and their values as text.
-
-They are accessed through the services of the node.
-"""
+"""Access to the parameters of a running node through its services, and parsing of their values."""
 
 from __future__ import annotations
 
@@ -32,7 +29,7 @@ TYPE_NAMES = {
 
 
 class RemoteParameters:
-    """The parameters of a running node.
+    """Reads and sets the parameters of a running node.
 
     Args:
         session: the session of the command.
@@ -47,7 +44,7 @@ class RemoteParameters:
 
     @classmethod
     async def of(cls, session: Session, arguments: argparse.Namespace) -> RemoteParameters:
-        """Return the parameters of the node that the command line names.
+        """Create the access to the node that the command line names.
 
         Raises:
             LinkwrightError: CLI423, the node is not running.
@@ -60,34 +57,33 @@ class RemoteParameters:
     async def names(self, prefixes: Sequence[str] = ()) -> list[str]:
         """Return the sorted names of the declared parameters.
 
-        If prefixes are given, only names with one of them are returned.
+        Args:
+            prefixes: if not empty, only names with one of these prefixes are returned.
         """
         response = await self._call("list_parameters", prefixes=list(prefixes))
         return sorted(response.result.names)
 
     async def values(self, names: Sequence[str]) -> list[Any]:
-        """Return the values of parameters in the order of the names.
-
-        They are rcl_interfaces/msg/ParameterValue messages.
-        """
+        """Return the values (rcl_interfaces/msg/ParameterValue) of parameters in the given order."""
         response = await self._call("get_parameters", names=list(names))
         return list(response.values)
 
     async def descriptors(self, names: Sequence[str]) -> list[Any]:
-        """Return the descriptors of parameters in the order of the names.
-
-        They are rcl_interfaces/msg/ParameterDescriptor messages.
-        """
+        """Return the descriptors (rcl_interfaces/msg/ParameterDescriptor) in the given order."""
         response = await self._call("describe_parameters", names=list(names))
         return list(response.descriptors)
 
     async def set(self, parameters: Sequence[Any]) -> list[Any]:
-        """Set parameters (rcl_interfaces/msg/Parameter) one by one, and return a result for each."""
+        """Set parameters (rcl_interfaces/msg/Parameter) one by one.
+
+        Returns:
+            A result (rcl_interfaces/msg/SetParametersResult) for each parameter.
+        """
         response = await self._call("set_parameters", parameters=list(parameters))
         return list(response.results)
 
     async def set_together(self, parameters: Sequence[Any]) -> Any:
-        """Set all parameters atomically, and return the result."""
+        """Set all parameters atomically, and return one rcl_interfaces/msg/SetParametersResult."""
         response = await self._call("set_parameters_atomically", parameters=list(parameters))
         return response.result
 
@@ -120,9 +116,9 @@ class RemoteParameters:
 
 
 def parameter_of(name: str, text: str) -> Any:
-    """Return a parameter whose value is read as YAML, as ros2 does.
+    """Return a rcl_interfaces/msg/Parameter whose value is parsed from a text.
 
-    It is a rcl_interfaces/msg/Parameter.
+    As in ros2, the text is read as YAML. A text that is not a boolean, a number or a list of one type remains a string.
     """
     import yaml
 
@@ -147,6 +143,6 @@ def parameter_of(name: str, text: str) -> Any:
 
 
 def print_result(result: Any, good: str, bad: str) -> None:
-    """Print the text for success or the text for failure, with the reason if there is one."""
+    """Print a message for success or failure, followed by the reason if the node gave one."""
     text = good if result.successful else bad
     print(f"{text}: {result.reason}" if result.reason else text, file=sys.stdout if result.successful else sys.stderr)

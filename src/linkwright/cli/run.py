@@ -10,7 +10,7 @@ from linkwright.cli.view import add_viewer_options
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``run``."""
     parser.usage = f"{parser.prog} [options] PACKAGE EXECUTABLE [ARGUMENT ...] [--ros-args ...]"
     parser.add_argument(
         "--prefix", metavar="COMMAND", help="prefix the command line with this command, such as 'gdb -ex run --args'"
@@ -27,9 +27,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run an executable in place of this process, and return its exit status.
+    """Replace this process by an executable of a package, which then receives the signals.
 
-    Replacing this process lets the executable receive the signals.
+    On Windows, run the executable and return its exit status.
     """
     from linkwright import standins
     from linkwright.launch import LaunchOptions, find_program, is_viewer, run_viewer

@@ -47,7 +47,7 @@ _SERVICES = Kind(
 
 
 def configure_list(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``service list``."""
     add_session_arguments(parser)
     add_types_argument(parser, types_help="also print the type of each service")
     add_count_argument(parser, "service")
@@ -66,7 +66,7 @@ def run_list(arguments: argparse.Namespace) -> int:
 
 
 def configure_find(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``service find``."""
     add_session_arguments(parser)
     parser.add_argument("service_type", metavar="TYPE", help="the type, such as std_srvs/srv/SetBool")
     add_count_argument(parser, "service")
@@ -79,7 +79,7 @@ def run_find(arguments: argparse.Namespace) -> int:
 
 
 def configure_info(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``service info``."""
     add_service_arguments(parser)
 
 
@@ -98,7 +98,7 @@ def run_info(arguments: argparse.Namespace) -> int:
 
 
 def configure_type(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``service type``."""
     add_service_arguments(parser)
 
 
@@ -108,7 +108,7 @@ def run_type(arguments: argparse.Namespace) -> int:
 
 
 def configure_call(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``service call``."""
     add_session_arguments(parser)
     parser.add_argument("service_name", metavar="SERVICE", help="the service, such as /add_two_ints")
     parser.add_argument(
@@ -124,7 +124,7 @@ def configure_call(parser: argparse.ArgumentParser) -> None:
 
 
 def run_call(arguments: argparse.Namespace) -> int:
-    """Print the request and the response, as ros2 does."""
+    """Call a service, and print the request and the response as ros2 does."""
     from linkwright.messages import get_service
 
     name = absolute(arguments.service_name)
@@ -166,7 +166,13 @@ def run_call(arguments: argparse.Namespace) -> int:
 
 
 def _check_type(session: Session, name: str, asked: str) -> None:
-    """Check the type of a service, instead of waiting in vain for a service of another type."""
+    """Check that a service, if it exists, has the type that the user gave.
+
+    Without this check, the command would wait for a service that never appears.
+
+    Raises:
+        LinkwrightError: CLI428, the service has another type.
+    """
     from linkwright.graph.endpoints.base import EndpointKind
 
     servers = [
@@ -185,7 +191,7 @@ def _check_type(session: Session, name: str, asked: str) -> None:
 
 
 def configure_echo(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``service echo``."""
     add_service_arguments(parser)
     parser.add_argument(
         "service_type",
@@ -225,7 +231,7 @@ def run_echo(arguments: argparse.Namespace) -> int:
 
 
 def _event_text(event: Any, form: EchoFormat) -> str:
-    """Format a service event as ros2 does: in YAML, with the name of its kind."""
+    """Format a service event as YAML with the name of the event's type, as ros2 does."""
     from linkwright.graph.endpoints.service import EventType
 
     kind = event.info.event_type
@@ -251,6 +257,6 @@ run = run_nested
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the subcommands of ``service``."""
     parser.add_argument("--include-hidden-services", action="store_true", help="consider hidden services as well")
     configure_nested(parser, VERBS)

@@ -1,8 +1,8 @@
-"""The session of a command that works on running nodes.
+"""The session of a command that communicates with running nodes.
 
-It has a graph that is joined over DDS or Zenoh, and a hidden node. A command passes a coroutine to `run_in_graph`.
-Ctrl-C cancels it, the graph is left cleanly, and the command exits with status 130. If the reader of its output exits,
-the command ends quietly.
+A session consists of a graph, joined over DDS or Zenoh, and a hidden node. A command passes a coroutine to
+`run_in_graph`. Ctrl-C cancels the coroutine, leaves the graph cleanly, and ends the command with status 130. If the
+program that reads the output exits, the command ends without an error.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ _POLL = 0.01
 
 
 def add_session_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options that every ros2 command on the graph has."""
+    """Declare the options that all ros2 commands on the graph have in common."""
     group = parser.add_argument_group(title="ROS graph")
     group.add_argument(
         "--spin-time",
@@ -53,13 +53,13 @@ def add_session_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 class Session:
-    """The graph and the node of a running command, which a `SignalWatch` can end.
+    """The graph and the node of a running command; a `SignalWatch` can end the session.
 
     Attributes:
         graph: the graph, joined with other processes.
         node: the command's hidden node.
         loop: the event loop.
-        visiting: whether a signal has to interrupt a visit; always False.
+        visiting: whether a signal has to interrupt a visit of launch actions; always False.
     """
 
     visiting = False
@@ -71,12 +71,12 @@ class Session:
         self._outcome: asyncio.Future[int] = self.loop.create_future()
 
     def finish(self, status: int = 0) -> None:
-        """End the command: `finished` returns the status."""
+        """End the command, so that `finished` returns the status."""
         if not self._outcome.done():
             self._outcome.set_result(status)
 
     def interrupt(self, _reason: str) -> None:
-        """End the command because the user interrupted it: `finished` returns 0."""
+        """End the command on a signal, so that `finished` returns 0."""
         self.finish()
 
     def seconds_to_end(self) -> float:
@@ -87,9 +87,9 @@ class Session:
         """Do nothing, because there are no processes to kill."""
 
     def guarded(self, callback: Callable[..., object]) -> Callable[..., None]:
-        """Return a callback whose errors end the command.
+        """Wrap a callback so that its exceptions end the command.
 
-        The graph itself would log them and continue.
+        Without the wrapper, the graph would log the exception and continue.
         """
 
         def call(*arguments: Any) -> None:
@@ -104,9 +104,10 @@ class Session:
         return call
 
     def receiver(self, callback: Callable[..., object]) -> Callable[..., None]:
-        """Return a guarded callback for a subscription, with the same number of parameters.
+        """Wrap a subscription's callback like `guarded`, and preserve its number of parameters.
 
-        The graph determines from this number whether the callback takes only the message, or also its metadata.
+        The graph determines from this number whether the callback receives only the message or also the message's
+        metadata.
         """
         guarded = self.guarded(callback)
 
@@ -119,7 +120,7 @@ class Session:
         return take if len(signature(callback).parameters) == 1 else take_both
 
     def every(self, period: float, callback: Callable[[], object]) -> None:
-        """Call a function periodically until the command ends."""
+        """Call a function every `period` seconds until the command ends."""
         loop = asyncio.get_running_loop()
         guarded = self.guarded(callback)
         due = loop.time()
@@ -135,14 +136,15 @@ class Session:
         loop.call_at(due, call)
 
     async def finished(self, timeout: float | None = None) -> int | None:
-        """Wait for the command to end, and return its status, or None after `timeout` seconds."""
+        """Wait for the command to end, and return its exit status, or None after `timeout` seconds."""
         done, _ = await asyncio.wait([self._outcome], timeout=timeout)
         return self._outcome.result() if done else None
 
     async def wait_until(self, condition: Callable[[], bool], timeout: float | None = None) -> bool:
-        """Poll a condition until it holds, and return whether it held.
+        """Poll a condition until it is true.
 
-        The result is False if the command ends, or `timeout` seconds pass, before it holds.
+        Returns:
+            True if the condition became true; False if the command ended or `timeout` seconds passed before that.
         """
         loop = asyncio.get_running_loop()
         end = None if timeout is None else loop.time() + timeout
@@ -155,7 +157,7 @@ class Session:
     async def wait_for_result(self, future: Future[T], timeout: float | None = None) -> T | None:
         """Wait for a future of the graph, and return its result.
 
-        The result is None if the command ends, or `timeout` seconds pass, before the future is done.
+        The result is None if the command ends or `timeout` seconds pass before the future is done.
         """
         loop = asyncio.get_running_loop()
         ended = asyncio.Event()
@@ -178,14 +180,14 @@ async def graph_session(
     remappings: Sequence[tuple[str, str]] = (),
     only_looks: bool = False,
 ) -> AsyncIterator[Session]:
-    """Join the graph with a hidden node for the duration of a block.
+    """Join the graph with a hidden node for the duration of the context.
 
     Args:
-        node_name: the node's name; unique to the process if omitted.
-        spin_time: seconds to wait for discovery; if omitted, until the other participants have been discovered.
+        node_name: the node's name; None for a name that is unique to the process.
+        spin_time: the time to wait for discovery, in seconds; None to wait until the other participants are discovered.
         use_sim_time: whether the node uses ``/clock``.
         remappings: rules ``(from, to)`` for the names that the node uses.
-        only_looks: whether the command only reads the graph, in which case its node is invisible to others.
+        only_looks: whether the command only reads the graph, in which case its node is invisible to other nodes.
 
     Raises:
         LinkwrightError: see `join_others`.
@@ -216,12 +218,13 @@ def run_in_graph(
     """Run a command's coroutine in the graph, and return its result as the exit status.
 
     Args:
-        arguments: the parsed arguments; the arguments of `add_session_arguments` may be missing.
+        arguments: the parsed arguments; the options of `add_session_arguments` may be missing.
         job: the coroutine function of the command.
         node_name: see `graph_session`.
         remappings: see `graph_session`.
         only_looks: see `graph_session`.
-        signals: a signal handler whose first signal finishes the session; if omitted, signals interrupt the command.
+        signals: the signal handler, which finishes the session on the first signal; None to interrupt the command
+            instead.
     """
 
     async def main() -> int:
@@ -246,14 +249,14 @@ def run_in_graph(
 
 
 def open_graph() -> Graph:
-    """Open a graph on the running event loop."""
+    """Open a graph that runs on the current event loop."""
     from linkwright.graph import Graph
 
     return Graph()
 
 
 async def join_others(graph: Graph, spin_time: float | None, *, only_looks: bool = False) -> None:
-    """Join the graph with other processes, and wait until these are discovered.
+    """Join the graph with other processes, and wait until their participants are discovered.
 
     Raises:
         LinkwrightError: CLI401, neither DDS nor Zenoh is available; DDS101, ROS_DOMAIN_ID is not a domain; DDS111, a
@@ -262,7 +265,7 @@ async def join_others(graph: Graph, spin_time: float | None, *, only_looks: bool
     from linkwright.wire.joining import available, check_settings, join, unavailable_reason
 
     if available():
-        check_settings()  # raise the errors that joining would only log
+        check_settings()  # report malformed settings as errors; joining would only log them
     transport = join(graph, only_looks=only_looks, must_join=True) if available() else None
     if transport is None:
         raise LinkwrightError(
@@ -284,10 +287,7 @@ async def join_others(graph: Graph, spin_time: float | None, *, only_looks: bool
 
 
 class SigtermExits:
-    """A context in which SIGTERM ends the process as Ctrl-C does.
-
-    The graph is then left cleanly.
-    """
+    """A context in which SIGTERM ends the process as Ctrl-C does, so that it leaves the graph."""
 
     def __enter__(self) -> None:
         self._before: Any = None

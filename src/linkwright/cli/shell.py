@@ -7,7 +7,7 @@ import sys
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``shell``."""
     parser.usage = "linkwright shell [-h] [-- COMMAND ...]"
     parser.add_argument(
         "command",
@@ -18,7 +18,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run a shell or a command in one, and return its exit status."""
+    """Run a shell, or a command in a shell, and return its exit status."""
     from linkwright.cli.completion.scripts import shell_script
     from linkwright.shell import run_shell
     from linkwright.shell.instead import INSTEAD

@@ -19,7 +19,7 @@ from linkwright.process.assignments import parse_assignments
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``sim``."""
     parser.add_argument(
         "world", metavar="WORLD", help="an SDF file, or the name of a world; the world 'empty' is a ground plane"
     )
@@ -39,7 +39,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Simulate until the user interrupts the command.
 
-    Return 1 if the world or the robot has errors.
+    Returns:
+        The exit status, which is 1 if the world or the robot has errors.
     """
     from linkwright.hosting.plans import HostOptions
     from linkwright.hosting.simulated import SimulatedWorld, run_simulated
@@ -48,7 +49,7 @@ def run(arguments: argparse.Namespace) -> int:
     from linkwright.simulation.server.worlds import load_world
 
     load_mujoco()
-    load_world(arguments.world)  # report a missing world now, before the log begins
+    load_world(arguments.world)  # report a missing world before the simulation starts to log
     path = Path(arguments.robot or arguments.world).absolute()
     finder = PackageFinder(start=[path.parent, Path.cwd()])
     world = SimulatedWorld(

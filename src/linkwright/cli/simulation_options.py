@@ -1,4 +1,4 @@
-"""The options that ``linkwright sim``, ``drive`` and ``spawn`` share, and their models."""
+"""The shared options of ``linkwright sim``, ``drive`` and ``spawn``, and loading of their models."""
 
 from __future__ import annotations
 
@@ -42,10 +42,10 @@ def add_simulation_options(parser: argparse.ArgumentParser) -> None:
 
 
 def positive(text: str) -> float:
-    """Parse a positive number of seconds.
+    """Parse a positive number of seconds, below 1e9.
 
     Raises:
-        argparse.ArgumentTypeError: the text is not a positive number.
+        argparse.ArgumentTypeError: the text is not such a number.
     """
     try:
         value = float(text)
@@ -78,7 +78,7 @@ def add_place_options(parser: argparse.ArgumentParser) -> None:
 
 
 def recording(arguments: argparse.Namespace) -> AbstractContextManager[BagWriter | None]:
-    """Return a context that opens the recording that the options request, or a context of None.
+    """Return a context that yields the writer of the requested recording, or None.
 
     Raises:
         LinkwrightError: BAG105, the folder or file exists or cannot be created; BAG107, `rosbags` is not installed.
@@ -94,8 +94,8 @@ class LoadedModel(NamedTuple):
     """A model to add to a world.
 
     Attributes:
-        text: the URDF or SDF text.
-        name: the name in the text.
+        text: the model in URDF or SDF.
+        name: the model's name in the file.
         description: the description of a robot in URDF; None for a model in SDF.
     """
 
@@ -105,11 +105,11 @@ class LoadedModel(NamedTuple):
 
 
 def load_model(path: Path, values: Mapping[str, str], finder: PackageFinder) -> LoadedModel | None:
-    """Read a robot or model; print its errors and return None if it has any.
+    """Load a robot or model; if it has errors, print them and return None.
 
     Args:
         path: a URDF, xacro or SDF file.
-        values: name -> value of the xacro arguments.
+        values: the values of xacro arguments by name.
         finder: the package finder.
     """
     from linkwright.descriptions import examine, is_world
@@ -134,9 +134,9 @@ def load_model(path: Path, values: Mapping[str, str], finder: PackageFinder) -> 
 
 
 def _with_absolute_uris(model: Model, folder: Path, finder: PackageFinder) -> Model:
-    """Return the model with absolute URIs where only its own folder resolves them.
+    """Return the model with absolute URIs for files that only the model's own folder resolves.
 
-    The model is passed on as a text, which has no folder.
+    The model is passed on as text, and thereby loses its folder.
     """
     from linkwright.descriptions.conversion import with_addresses
     from linkwright.packages import PackageFinder

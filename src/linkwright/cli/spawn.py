@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``spawn``."""
     parser.add_argument(
         "file", metavar="FILE", help="the URDF, xacro or SDF file of a robot or model to add to the world"
     )
@@ -38,7 +38,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Ask the simulation to add the model; return 1 if the file has errors.
+    """Request the simulation to add a model; return 1 if the model's file has errors.
 
     Raises:
         LinkwrightError: CLI332, no simulation is running; CLI333, the simulation rejects the model.

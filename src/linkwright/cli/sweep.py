@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``sweep``."""
     parser.add_argument("file", metavar="FILE", help="a Python file with a function decorated with @scenario(...)")
     add_values(
         parser,
@@ -59,7 +59,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run the sweep; return 1 if a run failed, 130 if it was interrupted."""
+    """Run the sweep; return 1 if a run failed, 130 if the sweep was interrupted."""
     from linkwright.sweep.plan import plan_runs, with_values
     from linkwright.sweep.running import prepare
     from linkwright.sweep.sweep import Sweep
@@ -72,7 +72,7 @@ def run(arguments: argparse.Namespace) -> int:
     scenario = with_values(prepare(path), parse_assignments(arguments.values), arguments.seeds)
     if arguments.rerun is not None:
         return _rerun(scenario, arguments.rerun)
-    os.chdir(began_in)  # undo the change of `prepare` to the scenario's folder
+    os.chdir(began_in)  # `prepare` changed to the folder of the scenario
     words = ["linkwright", "sweep", arguments.file, *arguments.values]
     if arguments.seeds is not None:
         words += ["--seeds", str(arguments.seeds)]
@@ -104,7 +104,7 @@ def _runner(arguments: argparse.Namespace, path: Path) -> Runner:
 
 
 def _rerun(scenario: Scenario, row: int) -> int:
-    """Run one row in this process, and print its values and results, or its error."""
+    """Run one row of the sweep in this process, and print its parameters and results, or its error."""
     from linkwright.sweep.plan import plan_runs
     from linkwright.sweep.running import results_of
 
@@ -127,14 +127,14 @@ def _rerun(scenario: Scenario, row: int) -> int:
 
 
 class _Progress:
-    """Shows the progress of a sweep, and counts its runs."""
+    """The progress line of a sweep; counts the runs."""
 
     def __init__(self) -> None:
         self.made = 0
         self._line = ProgressLine()
 
     def show(self, done: int, count: int, failed: int) -> None:
-        """Show how many runs have finished and how many of them failed."""
+        """Count one more run, and show how many runs have finished and how many of these failed."""
         self.made += 1
         self._line.show(phrase("{done} of {count} runs, {failed} failed", done=done, count=count, failed=failed))
 
@@ -144,7 +144,7 @@ class _Progress:
 
 
 def _print_summary(table: Table, seconds: float, made: int) -> None:
-    """Print a summary to standard error."""
+    """Print the number of runs, the duration and the number of failures to standard error."""
     summary = phrase(
         "{runs} in {seconds} s, {rate} per second, {failed} failed",
         runs=counted("{count} run", "{count} runs", made),

@@ -11,7 +11,7 @@ _PROGRAM = "from launch_testing.launch_test import main; main()"
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``test``."""
     parser.usage = f"{parser.prog} [options] FILE [NAME:=VALUE ...]"
     parser.add_argument("file", metavar="FILE", help="a file with generate_test_description and tests")
     parser.add_argument("words", metavar="NAME:=VALUE", nargs="*", help="arguments of its launch description")
@@ -28,7 +28,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run the tests in a separate process with the stand-ins, and return 0 if all passed."""
+    """Run the tests in a separate process with the stand-ins, and return 0 if all tests passed."""
     from linkwright.packages import PackageFinder
     from linkwright.packages.programs.workspace_environment import workspace_environment
     from linkwright.shell.programs import offer_programs, offer_ros_variables

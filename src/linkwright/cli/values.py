@@ -1,7 +1,4 @@
-"""Values that a user types for a message, a request or a goal.
-
-They are YAML that is checked against the type.
-"""
+"""The values of a message, request or goal that a user types as YAML, checked against the type."""
 
 from __future__ import annotations
 
@@ -35,7 +32,7 @@ _AUTOMATIC = ("auto", "now")
 
 
 def add_values_arguments(parser: argparse.ArgumentParser, *, values_help: str, metavar: str = "VALUES") -> Any:
-    """Declare the argument for the values, and the option to read them from standard input.
+    """Declare the argument for the values, and the options to read them from elsewhere.
 
     Args:
         parser: the parser of the command.
@@ -43,7 +40,7 @@ def add_values_arguments(parser: argparse.ArgumentParser, *, values_help: str, m
         metavar: the name of the argument in the help.
 
     Returns:
-        The argument group, in which another source of the values may be declared.
+        The argument group, to which the command can add another source of values.
     """
     group = parser.add_mutually_exclusive_group()
     group.add_argument("values", metavar=metavar, nargs="?", default="{}", help=values_help)
@@ -52,7 +49,11 @@ def add_values_arguments(parser: argparse.ArgumentParser, *, values_help: str, m
 
 
 def read_values(arguments: argparse.Namespace) -> str:
-    """Return the text of the values from the command line, a file or standard input."""
+    """Return the YAML text of the values from the command line, a file or standard input.
+
+    Raises:
+        LinkwrightError: CLI404, the file cannot be read.
+    """
     if getattr(arguments, "stdin", False):
         return sys.stdin.read()
     file = getattr(arguments, "yaml_file", None)
@@ -70,10 +71,12 @@ def read_values(arguments: argparse.Namespace) -> str:
 
 
 def parse_values(text: str) -> list[dict[str, Any]]:
-    """Return the mappings in a text: one, or one for each document of a YAML stream.
+    """Parse YAML, and return the mapping of each document.
+
+    Empty documents are skipped; if all are empty, the result is one empty mapping.
 
     Raises:
-        LinkwrightError: CLI402, the text is not YAML; CLI403, it is not a mapping.
+        LinkwrightError: CLI402, the text is not YAML; CLI403, a document is not a mapping.
     """
     import yaml
 
@@ -120,12 +123,12 @@ def _no_mapping(document: object, source: SourceText) -> Diagnostic:
 
 
 def check_values(message: Message, values: Mapping[str, Any], text: str = "") -> None:
-    """Check that values fit a message, and report all that do not in one error.
+    """Check that values fit a message; one error reports all values that do not.
 
     Args:
-        message: a message of the type; it is not changed.
+        message: a message of the type, which remains unchanged.
         values: a mapping from `parse_values`.
-        text: the source of the values, to show locations in it.
+        text: the YAML source of the values, for the locations in the error.
 
     Raises:
         LinkwrightError: CLI405, there is no such field; CLI406, a value is invalid for its field.
@@ -137,13 +140,13 @@ def check_values(message: Message, values: Mapping[str, Any], text: str = "") ->
 
 
 def fill(message: Message, values: Mapping[str, Any], text: str = "") -> list[Callable[[Any], None]]:
-    """Set the fields of a message.
+    """Set the fields of a message to values.
 
-    As in ``ros2 topic pub``, ``header: auto`` (for a std_msgs/Header) and ``stamp: now`` (for a
-    builtin_interfaces/Time) insert the time of publishing.
+    As in ``ros2 topic pub``, the values ``header: auto`` (for a std_msgs/Header) and ``stamp: now`` (for a
+    builtin_interfaces/Time) mean the time of publishing.
 
     Returns:
-        Functions that set these stamps, to be called with a Time message.
+        Functions that set the stamps of this message; call each with a Time message before publishing.
     """
     from linkwright.messages import set_fields
 
@@ -154,9 +157,10 @@ def fill(message: Message, values: Mapping[str, Any], text: str = "") -> list[Ca
 
 
 def _split(message: Any, values: dict[str, Any]) -> tuple[dict[str, Any], list[Callable[[Any], None]]]:
-    """Return the values without placeholders for the time of publishing.
+    """Split values into plain values and placeholders for the time of publishing.
 
-    The second result is a list of functions that set these stamps.
+    Returns:
+        The values without placeholders, and a function for each placeholder that sets its stamp.
     """
     setters: list[Callable[[Any], None]] = []
     plain: dict[str, Any] = {}
@@ -180,7 +184,7 @@ def _setter(owner: Any, name: str) -> Callable[[Any], None]:
 
 
 class _Places:
-    """Finds the location of a value in the text, given its path of names and indices."""
+    """Maps the path of a value, which consists of names and indices, to its location in the YAML."""
 
     def __init__(self, text: str) -> None:
         self.source = SourceText(_NAME, text)
@@ -190,11 +194,11 @@ class _Places:
 
             try:
                 self._root = yaml.compose(text, yaml.SafeLoader)
-            except yaml.YAMLError:  # locations in several documents are not supported
+            except yaml.YAMLError:  # a text of several documents, for which locations are not available
                 self._root = None
 
     def span(self, path: tuple[str | int, ...], *, key: bool = False) -> Span | None:
-        """Return the location of a value, or of its key."""
+        """Return the location of a value or of its key, or None if it is unknown."""
         import yaml
 
         node, at = self._root, None

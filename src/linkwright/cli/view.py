@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``view``."""
     parser.add_argument(
         "file",
         metavar="FILE",
@@ -37,7 +37,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def add_viewer_options(parser: argparse.ArgumentParser) -> None:
-    """Declare the options of the page, which `launch` and `run` share."""
+    """Declare the options of the page, which `view`, `launch` and `run` share."""
     group = parser.add_argument_group(title="page in the browser")
     group.add_argument("--no-open", action="store_true", help="do not open the page in the browser")
     group.add_argument("--host", default="127.0.0.1", help="address to serve the page at (default: %(default)s)")
@@ -59,10 +59,10 @@ _UNITS = {"": 1, "B": 1, "KB": 10**3, "MB": 10**6, "GB": 10**9}
 
 
 def size(text: str) -> int:
-    """Parse a number of bytes, such as ``256MB``.
+    """Parse a size such as ``256MB``, and return the number of bytes.
 
     Raises:
-        argparse.ArgumentTypeError: the text is not a number of bytes.
+        argparse.ArgumentTypeError: the text is not a size.
     """
     found = re.fullmatch(r"([0-9]{1,9}(?:\.[0-9]{1,3})?) ?([KMG]?B)?", text, re.ASCII | re.IGNORECASE)
     if found is None:
@@ -82,7 +82,7 @@ def port(text: str) -> int:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Show a model, or the differences between two, until the user interrupts the command."""
+    """Show a model, or the differences of two models, until the user interrupts the command."""
     from linkwright.bag import is_recording
     from linkwright.hosting.plans import HostOptions
 

@@ -1,4 +1,4 @@
-"""``linkwright voice``: try speech engines on recordings, and manage enrolled words."""
+"""``linkwright voice``: test speech engines with recordings, and manage enrolled words."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _LANGUAGES = {"en": "stop", "zh": "停止"}
 
 
 def configure_try(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``voice try``."""
     parser.add_argument("files", metavar="WAV", nargs="+", help="recordings")
     parser.add_argument(
         "--engine",
@@ -50,7 +50,7 @@ def configure_try(parser: argparse.ArgumentParser) -> None:
 
 
 def run_try(arguments: argparse.Namespace) -> int:
-    """Print the words that an engine recognizes in recordings."""
+    """Print the words that a speech engine recognizes in recordings."""
     from linkwright.speech.commands.command_file import DEFAULT_FILE, read_command_file
     from linkwright.speech.engine import EngineOptions, make_engine
     from linkwright.speech.sound.wav import read_wav
@@ -69,28 +69,26 @@ def run_try(arguments: argparse.Namespace) -> int:
 
 
 class _Trial:
-    """Feeds recordings to an engine as a microphone would, and prints the results.
-
-    The recordings are fed one after another.
+    """Feeds recordings to an engine in blocks, as a microphone does, and prints the results.
 
     Args:
         engine: the speech engine.
-        commands: the commands to match.
+        commands: the commands that the results are matched with.
         partials: whether to print partial results.
     """
 
     def __init__(self, engine: SpeechEngine, commands: CommandSet, *, partials: bool) -> None:
         self._engine, self._commands, self._partials = engine, commands, partials
-        self._given = 0  # in samples
+        self._given = 0  # the number of samples fed to the engine
 
     def hear(self, file: str, samples: Samples) -> None:
-        """Print the results for a recording, one per line."""
+        """Feed a recording to the engine, and print the results, one per line."""
         import numpy as np
 
         from linkwright.speech.sound.samples import BLOCK, RATE
 
         began = self._given / RATE
-        sound = np.concatenate((samples, np.zeros(RATE, np.int16)))  # append silence, at which engines end an utterance
+        sound = np.concatenate((samples, np.zeros(RATE, np.int16)))  # append silence, which ends an utterance
         finals = 0
         for first in range(0, len(sound), BLOCK):
             block = sound[first : first + BLOCK]
@@ -105,7 +103,14 @@ class _Trial:
             print(localized(phrase("{file}: nothing recognized", file=file)))
 
     def _print(self, file: str, results: Sequence[Heard], began: float, now: float) -> int:
-        """Print the results at a time of the recording, and return the number of final ones."""
+        """Print results, and return how many of them are final.
+
+        Args:
+            file: the name of the recording.
+            results: the results of one block.
+            began: the time at which the recording begins, in seconds since the first recording began.
+            now: the current time on the same scale, which includes the time of computation.
+        """
         for result in results:
             if result.final or self._partials:
                 times = {"start": f"{max(0.0, result.start - began):.2f}", "end": f"{result.end - began:.2f}"}
@@ -128,7 +133,7 @@ class _Trial:
 
 
 def configure_enrol(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``voice enrol``."""
     parser.add_argument("word", metavar="WORD", help="the word or phrase, as in the commands")
     parser.add_argument(
         "files", metavar="WAV", nargs="+", help="recordings that each contain the word once; three are best"
@@ -137,7 +142,7 @@ def configure_enrol(parser: argparse.ArgumentParser) -> None:
 
 
 def run_enrol(arguments: argparse.Namespace) -> int:
-    """Enrol a word from recordings; if one of them is unusable, all are rejected."""
+    """Enrol a word from recordings; if one recording is unusable, none is used."""
     from linkwright.speech.enrolled.enrolment import enrol
     from linkwright.speech.enrolled.words import TAKES
     from linkwright.speech.sound.wav import read_wav
@@ -161,7 +166,7 @@ def run_enrol(arguments: argparse.Namespace) -> int:
 
 
 def configure_words(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``voice words``."""
     _add_file(parser)
 
 
@@ -178,7 +183,7 @@ def run_words(arguments: argparse.Namespace) -> int:
 
 
 def configure_forget(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``voice forget``."""
     parser.add_argument("word", metavar="WORD", help="the word, as `linkwright voice words` prints it")
     _add_file(parser)
 
@@ -197,11 +202,11 @@ def run_forget(arguments: argparse.Namespace) -> int:
 
 
 def configure_engines(parser: argparse.ArgumentParser) -> None:
-    """Declare no arguments."""
+    """Declare nothing, because ``voice engines`` does not take arguments."""
 
 
 def run_engines(_: argparse.Namespace) -> int:
-    """Try to create each engine in each language, and print what is missing."""
+    """Create each speech engine in each language, and print what is missing for those that fail."""
     from linkwright.speech.engine import engine_names
 
     for name in engine_names():
@@ -257,10 +262,10 @@ VERBS = {
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the subcommands."""
+    """Declare the subcommands of ``voice``."""
     configure_nested(parser, VERBS)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run the subcommand."""
+    """Run the requested subcommand."""
     return run_nested(arguments)

@@ -1,4 +1,4 @@
-"""The commands in addition to the engine's commands (`linkwright.cli.command.COMMANDS`)."""
+"""The commands of ``linkwright`` that ``linkwright-core`` does not have."""
 
 GROUPS = {
     "robot descriptions": {

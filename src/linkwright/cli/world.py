@@ -15,7 +15,7 @@ from linkwright.diagnostics.translation import localized
 
 
 def configure_list(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``world list``."""
     parser.add_argument(
         "--json", action="store_true", help="print the kind, name and path of each world and model as a JSON list"
     )
@@ -50,7 +50,7 @@ def _print_places(places: Mapping[str, Path]) -> None:
 
 
 def configure_new(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``world new``."""
     parser.add_argument(
         "name", metavar="NAME", help="the world's name, or the file to write, such as worlds/kitchen.world"
     )
@@ -83,10 +83,10 @@ VERBS = {
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the subcommands."""
+    """Declare the subcommands of ``world``."""
     configure_nested(parser, VERBS)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run the subcommand."""
+    """Run the requested subcommand."""
     return run_nested(arguments)

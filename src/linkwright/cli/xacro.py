@@ -33,7 +33,7 @@ _DEFAULTS: dict[str, Any] = {
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``xacro``."""
     parser.add_argument("file", metavar="FILE", help="the xacro file, or - for standard input")
     add_values(
         parser,
@@ -87,15 +87,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def without_options(words: list[str]) -> SimpleNamespace | None:
-    """Return the parsed arguments for a command line without options.
-
-    The result is None if it names no file.
-    """
+    """Return the parsed arguments of a command line without options, or None if it names no file."""
     return SimpleNamespace(file=words[0], values=words[1:], **_DEFAULTS) if words else None
 
 
 def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
-    """Run the command.
+    """Expand the file, or list its arguments or explain its elements.
 
     Findings are written to standard error, results to standard output or a file.
     """
@@ -138,7 +135,7 @@ def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
 
 
 def _values(words: list[str]) -> tuple[dict[str, str], list[Diagnostic]]:
-    """Return the xacro arguments, and remarks on ignored ones.
+    """Return the xacro arguments by name, and remarks on ignored arguments.
 
     Empty values and ROS parameters (``_name:=``) are ignored.
     """
@@ -190,7 +187,7 @@ def _provenance(inputs: Inputs, name: str, form: str) -> str:
 
     found = provenance_of_named(inputs, name)
     if form == "json":
-        with recursion_limit_for(inputs.limits):  # elements may be nested deeper than Python's recursion limit
+        with recursion_limit_for(inputs.limits):  # elements can be nested more deeply than that
             return _json({"elements": [provenance_data(provenance) for provenance in found]})
     return "\n".join(map(provenance_text, found))
 

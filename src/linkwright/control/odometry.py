@@ -1,4 +1,4 @@
-"""Odometry of drives, and the corresponding transform."""
+"""Odometry messages of drives, and the corresponding transforms."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ _UNKNOWN = 1e12
 
 
 def planar_variances(x: float, y: float, yaw: float) -> Variances:
-    """Return variances for planar motion.
+    """Return the six variances of a planar motion from those of x, y and yaw.
 
-    Values that are not measured have large variances, unless all variances are 0.
+    The other three variances are large, or 0 if all given variances are 0.
     """
     return (x, y, _UNKNOWN, _UNKNOWN, _UNKNOWN, yaw) if x or y or yaw else _NONE
 
@@ -42,9 +42,9 @@ def yaw_of(pose: Transform) -> float:
 
 
 def planar_velocity(pose: Transform, linear: Array, angular: Array) -> tuple[float, float, float]:
-    """Convert a velocity from world axes to the robot's axes.
+    """Rotate a velocity from world axes to the robot's axes.
 
-    The result is the velocities forward and to the left in m/s, and around z in rad/s.
+    Returns the velocities forward and to the left in m/s, and around z in rad/s.
     """
     yaw = yaw_of(pose)
     forward = float(linear[0] * cos(yaw) + linear[1] * sin(yaw))
@@ -84,10 +84,10 @@ class OdometryTopics:
     Attributes:
         frame: the frame in which the robot moves.
         child: the robot's frame.
-        odometry: the odometry topic; None for none.
-        transforms: the transform topic; None for none.
+        odometry: the odometry topic; None to publish no odometry.
+        transforms: the transform topic; None to publish no transforms.
         variances: the variances of the pose.
-        velocity_variances: the variances of the velocities; None for those of the pose.
+        velocity_variances: the variances of the velocities; None to use those of the pose.
     """
 
     frame: str
@@ -107,14 +107,17 @@ class OdometryTopics:
 
     @property
     def is_wanted(self) -> bool:
-        """Whether a subscription exists."""
+        """Whether a topic has a subscription."""
         for output, _ in self._outputs:  # noqa: SIM110 - see Output.is_wanted
             if output.is_wanted:
                 return True
         return False
 
     def publish(self, stamp: Time, pose: Transform, forward: float, sideways: float, angular: float) -> None:
-        """Publish the pose, and the velocities along the robot's own axes in m/s and rad/s."""
+        """Publish the pose and velocities on the topics that have subscriptions.
+
+        Velocities are along the robot's axes, in m/s and rad/s.
+        """
         for output, send in self._outputs:
             if output.is_wanted:
                 send(stamp, pose, forward, sideways, angular)
@@ -137,16 +140,16 @@ def _diagonal(variances: Variances) -> Array:
 
 
 def transform_message(header: Header, child: str, pose: Transform) -> Any:
-    """Return a message with one transform, for transform topics."""
+    """Return a tf2_msgs/TFMessage with one transform."""
     return _classes().transforms([transform_stamped(header, child, pose)])
 
 
 def transform_stamped(header: Header, child: str, pose: Transform) -> TransformStamped:
-    """Return the transform of a child frame in the frame of the header."""
+    """Return the pose of a child frame in the frame of a header, as a TransformStamped."""
     x, y, z, qx, qy, qz, qw = pose
     return TransformStamped(header, child, TransformMessage(Vector3(x, y, z), Quaternion(qx, qy, qz, qw)))
 
 
 def transforms_topic(node: SteppedNode, name: str = "/tf") -> Output:
-    """Create an output for transforms."""
+    """Create a publisher of transforms."""
     return node.publisher(TRANSFORMS, name, TRANSFORMS_DEPTH)

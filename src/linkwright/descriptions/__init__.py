@@ -1,4 +1,4 @@
-"""Reading of files or unsaved texts as robots and worlds, with their origins and findings."""
+"""The reading of files or unsaved texts as robots and worlds, with all findings."""
 
 from linkwright.descriptions.service import (
     Description,

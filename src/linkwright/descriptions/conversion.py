@@ -1,4 +1,4 @@
-"""Conversion of robots, models and worlds to one SDF without includes."""
+"""The conversion of robots, models and worlds to one SDF file without includes."""
 
 from __future__ import annotations
 
@@ -37,9 +37,9 @@ class Converted:
     """The result of converting a file to SDF.
 
     Attributes:
-        sdf: the SDF; None if the file cannot be read.
-        diagnostics: the errors of the file, and the parts that could not be converted.
-        files: the files that were read, the main file first.
+        sdf: the SDF, or None if the file cannot be read.
+        diagnostics: the findings about the file, and about parts that could not be converted.
+        files: the files that were read, starting with the main file.
     """
 
     sdf: Sdf | None
@@ -55,17 +55,20 @@ def as_sdf(
     lump_fixed_joints: bool = True,
     folder: Path | None = None,
 ) -> Converted:
-    """Convert a URDF, xacro or SDF file to one SDF that needs no other files except meshes and textures.
+    """Return a URDF, xacro or SDF file converted to one SDF.
+
+    The SDF needs no other files except meshes and textures.
 
     Args:
         path: the file.
-        finder: finds packages.
+        finder: the finder of packages.
         arguments: values for the file's ``<xacro:arg>``.
-        lump_fixed_joints: for URDF, see `linkwright.sdf.from_urdf.model_from_robot`.
-        folder: the folder of the new SDF, to which paths of meshes are relative; by default the folder of the file.
+        lump_fixed_joints: whether to merge links on fixed joints in a URDF; see
+            `linkwright.sdf.from_urdf.model_from_robot`.
+        folder: the folder of the new SDF, to which paths of meshes are relative. The default is the folder of the file.
 
     Raises:
-        LinkwrightError: the file is not XML, or cannot be expanded.
+        LinkwrightError: if the file is not XML, or cannot be expanded.
     """
     folder = folder or path.parent
     if is_world(path.name):
@@ -88,7 +91,7 @@ def as_sdf(
 
 
 def _as_it_is(world: World) -> World:
-    """Return a world as it was saved, with its gravity at the place that SDF has used since 1.6."""
+    """Return a world in its saved state, with gravity in the element that SDF uses since 1.6."""
     from linkwright.sdf.saved import as_saved
     from linkwright.sdf.worlds import gravity_of
 
@@ -100,17 +103,17 @@ def _as_it_is(world: World) -> World:
 
 
 def _from_folder(part: Any, written_in: Path, folder: Path) -> Any:
-    """Return a part of SDF with paths relative to a folder instead of the folder in which they are written."""
+    """Return a part of SDF whose relative paths are relative to another folder."""
     return with_addresses(part, written_in, lambda written, beside: _address(written, beside, folder))
 
 
 def with_addresses(part: Any, written_in: Path, change: Callable[[str, Path], str]) -> Any:
-    """Return a part of SDF with changed addresses of meshes, textures and other files.
+    """Return a part of SDF with changed URIs of meshes, textures and other files.
 
     Args:
         part: an object of `linkwright.sdf`, or a tuple of them.
-        written_in: the folder of the part's file, if the object does not contain it.
-        change: returns the new address for an address and the folder of the file that contains it.
+        written_in: the folder of the part's file, for an object that does not store its file.
+        change: a function that returns the new URI, given a URI and the folder of the file that contains it.
     """
     if isinstance(part, tuple):
         return tuple(with_addresses(item, written_in, change) for item in part)
@@ -135,7 +138,11 @@ def with_addresses(part: Any, written_in: Path, change: Callable[[str, Path], st
 
 
 def _address(written: str, written_in: Path, folder: Path) -> str:
-    """Return an address; the path of an existing file becomes relative to a folder, or a file URI if outside it."""
+    """Return the URI of a file for an SDF in another folder.
+
+    The relative path of an existing file becomes relative to the folder, or a file URI if the file is outside it. Other
+    URIs are unchanged.
+    """
     file = Path(os.path.abspath(written_in / written))  # noqa: PTH100 - links stay what they are
     folder = folder.absolute()
     if not written or "://" in written or Path(written).is_absolute() or not file.exists():

@@ -1,4 +1,4 @@
-"""Two descriptions to compare: two files, or a file and its version in a commit."""
+"""Pairs of descriptions to compare: two files, or a file and its version in a git commit."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ class Model:
     """One of two compared descriptions.
 
     Attributes:
-        path: the file, absolute.
-        values: the values of its ``<xacro:arg>``.
-        finder: finds its packages.
-        revision: the commit that contains the file; None for a file of the working tree.
+        path: the absolute path of the file.
+        values: the values of the file's ``<xacro:arg>``.
+        finder: the finder of the file's packages.
+        revision: the commit that contains the file, or None for a file of the working tree.
     """
 
     path: Path
@@ -34,24 +34,27 @@ class Model:
     revision: Revision | None = None
 
     def label(self) -> str:
-        """Return the file's name for users."""
+        """Return the name of the file for users; see `named`."""
         return self.named(str(self.path))
 
     @property
     def title(self) -> str:
-        """The name of the file without its folders; ``HEAD:arm.urdf`` for a file of a commit."""
+        """The name of the file without folders, such as ``HEAD:arm.urdf`` for a file of a commit."""
         return self.path.name if self.revision is None else f"{self.revision.name}:{self.path.name}"
 
     def named(self, file: str) -> str:
-        """Return the name of a file for users: ``HEAD:robots/arm.urdf``, or a path relative to the current folder."""
+        """Return the name of a file for users.
+
+        Examples are ``HEAD:robots/arm.urdf``, and a path relative to the current folder.
+        """
         name = file if self.revision is None else self.revision.label(file)
         return display_path(name) if name == file else name
 
     def read(self) -> Description:
-        """Return the description, which has a robot.
+        """Return the description, which always has a robot.
 
         Raises:
-            LinkwrightError: the description cannot be read or expanded, or urdfdom would refuse it.
+            LinkwrightError: if the description cannot be read or expanded, or if urdfdom would refuse it.
         """
         try:
             found = examine(self.path, arguments=self.values, packages=self.finder)
@@ -68,15 +71,15 @@ class Model:
         return robot
 
     def resolve(self, address: str) -> Path:
-        """Return the file of a mesh's address.
+        """Return the file of a mesh's URI.
 
         Raises:
-            LinkwrightError: the package of the mesh is not found.
+            LinkwrightError: if the package of the mesh is not found.
         """
         return self.finder.resolve(address, self.path.parent)
 
     def _relabelled(self, diagnostic: Diagnostic) -> Diagnostic:
-        """Return a finding in which files of a commit are named as git names them."""
+        """Return a finding in which files of a commit have the names that git uses."""
         if self.revision is None:
             return diagnostic
         notes = tuple(note._replace(span=self._span(note.span)) for note in diagnostic.notes)
@@ -99,7 +102,7 @@ class Pair:
     new: Model
 
     def close(self) -> None:
-        """Remove the temporary files of a commit."""
+        """Remove the temporary folder of a commit, if there is one."""
         if self.old.revision is not None:
             self.old.revision.close()
 
@@ -108,7 +111,7 @@ class Pair:
         return self.old.named(file)
 
     def compared(self) -> Comparison:
-        """Return the differences between the two descriptions.
+        """Read both descriptions and return the differences between them.
 
         Raises:
             LinkwrightError: see `Model.read`.
@@ -116,7 +119,7 @@ class Pair:
         return self.compare(self.old.read_robot(), self.new.read_robot())
 
     def compare(self, old: Robot, new: Robot) -> Comparison:
-        """Return the differences between the robots of the two descriptions."""
+        """Return the differences between the robots of the two descriptions, which were read before."""
         before, after = Side(old, resolve=self.old.resolve), Side(new, resolve=self.new.resolve)
         if self.old.revision is not None:
             ours, theirs = self.old.revision.normalizers(self.new.finder)
@@ -125,7 +128,7 @@ class Pair:
 
 
 def text_of_old(description: Description) -> str:
-    """Return a text for the old description that differs from any new one.
+    """Return a text that identifies the old description, even if the new one has the same text.
 
     Descriptions are identified by their text.
     """
@@ -133,12 +136,12 @@ def text_of_old(description: Description) -> str:
 
 
 def pair_of(old: Path, new: Path, values: Mapping[str, str]) -> Pair:
-    """Return a pair of two files.
+    """Return the pair of two files.
 
     Args:
         old: the old file.
         new: the new file.
-        values: the values for the ``<xacro:arg>`` of both.
+        values: the values for the ``<xacro:arg>`` of both files.
     """
     first, second = (
         Model(path.absolute(), values, PackageFinder(start=[path.absolute().parent, Path.cwd()])) for path in (old, new)
@@ -147,9 +150,9 @@ def pair_of(old: Path, new: Path, values: Mapping[str, str]) -> Pair:
 
 
 def pair_with_commit(path: Path, commit: str, values: Mapping[str, str]) -> Pair:
-    """Return the pair of a file's version in a commit and the file.
+    """Return the pair of a file's version in a commit and the file in the working tree.
 
-    The commit's files exist until the pair is closed.
+    The files of the commit exist until the pair is closed.
 
     Raises:
         LinkwrightError: see `linkwright.descriptions.revisions.Revision`.

@@ -1,4 +1,4 @@
-"""Files of a git commit, for comparison with the edited ones."""
+"""The files of a git commit, for comparison with those of the working tree."""
 
 from __future__ import annotations
 
@@ -21,22 +21,23 @@ _OF_HOOKS = ("GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_PREFIX")
 
 
 class Revision:
-    """All files of a commit, in a temporary folder, which also provides its includes and meshes.
+    """All files of a commit in a temporary folder, including included files and meshes.
 
-    Neither the repository nor its working tree is changed. A file that was renamed since is found by its old name, as
-    git recognises it. Packages that are not in the commit are searched for where the working tree's packages are.
+    Neither the repository nor its working tree is changed. A file that was renamed after the commit is found by its old
+    name, as git recognises it. Packages that are not in the commit are found from the working tree.
 
     Args:
         path: a file of the working tree.
         name: the commit, as git names it: ``HEAD``, ``main~2``, a tag or a hash.
 
     Attributes:
-        name: the commit, as above.
+        name: the commit, as git names it.
         path: the file in the temporary folder.
 
     Raises:
-        LinkwrightError: CLI341, git is not installed; CLI342, the file is not in a repository; CLI343, there is no such
-            commit; CLI344, the commit has no such file; CLI345, git cannot write the files.
+        LinkwrightError: CLI341 if git is not installed, CLI342 if the file is not in a repository, CLI343 if there is
+            no such commit, CLI344 if the commit does not contain the file, or CLI345 if git cannot write
+            the files.
     """
 
     def __init__(self, path: Path, name: str) -> None:
@@ -62,12 +63,12 @@ class Revision:
         self.path = self._root / inside
 
     def close(self) -> None:
-        """Remove the folder."""
+        """Remove the temporary folder."""
         self._folder.cleanup()
 
     @cached_property
     def finder(self) -> PackageFinder:
-        """The finder for packages of the commit, and otherwise for those found from the working tree."""
+        """The finder of the commit's packages, and of other packages from the working tree."""
         return PackageFinder(start=[self.path.parent, self._top, Path.cwd()], extra=self._packages)
 
     @cached_property
@@ -76,7 +77,7 @@ class Revision:
         return {name: share_of_sources(name, folder) for name, folder in found.items()}
 
     def label(self, file: str) -> str:
-        """Return the name of a file as git writes it (``HEAD:robots/arm.urdf``).
+        """Return the name that git uses for a file of the commit, such as ``HEAD:robots/arm.urdf``.
 
         Other files keep their names.
         """
@@ -87,10 +88,10 @@ class Revision:
         return f"{self.name}:{inside.as_posix()}"
 
     def normalizers(self, finder: PackageFinder) -> tuple[Callable[[str], str], Callable[[str], str]]:
-        """Return two functions that make paths comparable, for the commit's description and for the other one.
+        """Return functions that make paths of the commit and of the other side comparable.
 
         Args:
-            finder: finds the packages of the other description.
+            finder: the finder of the other description's packages.
         """
         theirs = {name: share for name in self._packages if (share := finder.find(name)) is not None}
         return _replacing(self._packages, self._root), _replacing(theirs, self._top)
@@ -136,10 +137,12 @@ def _commit(top: Path, name: str) -> str:
 
 
 def _before_renaming(top: Path, commit: str, inside: Path, name: str) -> Path:
-    """Return the name that a file of the working tree had in a commit before it was renamed, staged or not.
+    """Return the path that a file of the working tree had in a commit, before it was renamed.
+
+    The renaming need not be staged.
 
     Raises:
-        LinkwrightError: CLI344, git recognises it in none of the files that were removed since.
+        LinkwrightError: CLI344 if git recognises the file in none of the files that were removed after the commit.
     """
     new = inside.as_posix()
     with ScratchFolder("revision") as folder:
@@ -149,7 +152,7 @@ def _before_renaming(top: Path, commit: str, inside: Path, name: str) -> Path:
         own = {"GIT_INDEX_FILE": str(index)}
         _git(top, "add", "--intent-to-add", "--", new, environment=own)
         words = ("diff", "--no-ext-diff", "--find-renames", "--diff-filter=R", "--name-status", "-z", commit)
-        renames = _git(top, *words, environment=own).stdout.split("\0")  # for each: R087, the old name, the new name
+        renames = _git(top, *words, environment=own).stdout.split("\0")  # R087, old name, new name, ...
     for old, renamed in zip(renames[1::3], renames[2::3], strict=False):
         if renamed == new:
             return Path(old)
@@ -162,7 +165,11 @@ def _before_renaming(top: Path, commit: str, inside: Path, name: str) -> Path:
 
 
 def _git(folder: Path, *words: str, environment: Mapping[str, str] | None = None) -> subprocess.CompletedProcess[str]:
-    """Run git in a folder, in English."""
+    """Run git in a folder with English output, and return the completed process.
+
+    Raises:
+        LinkwrightError: CLI341 if git is not installed.
+    """
     variables = {name: value for name, value in os.environ.items() if name not in _OF_HOOKS}
     try:
         return subprocess.run(  # noqa: S603 - no shell; the user's word is not an option

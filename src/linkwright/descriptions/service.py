@@ -1,6 +1,6 @@
-"""Reading of descriptions and worlds, each text once.
+"""The reading of descriptions and worlds, with a cache so that each text is read only once.
 
-Only this module decides whether a file is xacro or plain URDF.
+No other module decides whether a file is xacro or plain URDF.
 """
 
 from __future__ import annotations
@@ -43,11 +43,12 @@ class Description:
 
     Attributes:
         name: the path as it was given, or `TEXT_NAME`.
-        document: the URDF document, expanded; every element has its source file and place.
+        document: the expanded URDF document, whose elements have their source file and position.
         reading: the result of the URDF reader.
-        expansion: xacro's record of the expansion; None for plain URDF.
+        expansion: the result of the xacro expansion, or None for plain URDF.
         overlay: texts that replaced those of files.
-        problems: errors due to which only parts of the description are available; then there is no robot.
+        problems: the errors because of which only parts of the description are available. If there are any, there is no
+            robot.
     """
 
     name: str
@@ -61,7 +62,7 @@ class Description:
     def of_expansion(cls, name: str, expansion: Expansion, overlay: Overlay | None = None) -> Description:
         """Return the description of an expanded file.
 
-        If the expansion has no `problems`, it has the whole robot.
+        The description has a robot only if the expansion has no `problems`.
         """
         reading = read(expansion.document)
         if expansion.problems:
@@ -70,12 +71,12 @@ class Description:
 
     @property
     def robot(self) -> Robot | None:
-        """The robot; None if urdfdom would refuse the model."""
+        """The robot, or None if urdfdom would refuse the model."""
         return self.reading.robot
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """The problems, the messages of xacro, and all findings of the reader."""
+        """The problems, the remarks of xacro, and all findings of the reader."""
         return (*self.problems, *self.remarks, *self.reading.diagnostics)
 
     @property
@@ -92,29 +93,29 @@ class Description:
 
     @property
     def files(self) -> tuple[Path, ...]:
-        """The files that were read, the main file first; empty for a plain text."""
+        """The files that were read, starting with the main file; empty for a text without a file."""
         if self.expansion is not None:
             return self.expansion.dependencies
         return () if self.name.startswith("<") else (Path(self.name),)
 
     @cached_property
     def sources(self) -> Mapping[Path, Document]:
-        """Every XML file that was read, as written (not expanded), the main file first."""
+        """The unexpanded XML files that were read, by path, starting with the main file."""
         if self.expansion is None:
             return {Path(self.name): self.document}
         from linkwright.xacro.cache import read_document
 
         found: dict[Path, Document] = {}
         for path in self.expansion.dependencies:
-            with suppress(LinkwrightError):  # Skip YAML files, which are among the files.
+            with suppress(LinkwrightError):  # YAML files are also among the files, but are not XML
                 found[path] = read_document(str(path), self.overlay)
         return found
 
     def provenance(self, element: Element) -> Provenance | None:
-        """Return the macro calls and includes that created an element; None for plain URDF.
+        """Return the macro calls and includes that produced an element, or None for plain URDF.
 
         Raises:
-            LinkwrightError: XAC802, the files have changed since.
+            LinkwrightError: XAC802 if the files have changed since.
         """
         return None if self.expansion is None else self.expansion.provenance(element)
 
@@ -123,10 +124,10 @@ _KEPT_TEXTS = 32
 
 
 class DescriptionLibrary:
-    """A cache of descriptions by their expanded texts, so that each text is read once.
+    """A cache of descriptions by their expanded texts, so that each text is read only once.
 
-    The launcher stores the description from which a text was expanded. The nodes and the viewer, which receive only the
-    text from a parameter or topic, can then find where everything was written.
+    The launcher stores each description that it expands. The nodes and the viewer, which only receive the text from a
+    parameter or topic, can then find the location of each element in the source files.
     """
 
     def __init__(self) -> None:
@@ -137,12 +138,13 @@ class DescriptionLibrary:
         """Store a description, which can then be found by its text.
 
         Args:
-            description: a description.
-            text: the text to find it by, if it is not the description's own text.
-            packages: finds the description's packages, if they may differ from those of the rest of the program.
+            description: the description.
+            text: the key under which to store it, or None for the description's own text.
+            packages: the finder of the description's packages, if they may differ from those of the rest of the
+                program.
 
         Returns:
-            The text.
+            The text under which the description is stored.
         """
         text = description.text if text is None else text
         self._descriptions[text] = description
@@ -154,7 +156,7 @@ class DescriptionLibrary:
         return text
 
     def packages(self, text: str) -> PackageFinder | None:
-        """Return the package finder of a stored description, or None if it has none."""
+        """Return the package finder of a stored description, or None if there is none."""
         return self._finders.get(text)
 
     def description(self, text: str) -> Description | None:
@@ -162,25 +164,25 @@ class DescriptionLibrary:
         return self._descriptions.get(text)
 
     def files(self, text: str) -> tuple[Path, ...]:
-        """Return the files of a stored description, the main file first; empty if it is not stored."""
+        """Return the files of a stored description, the main file first; empty if not stored."""
         known = self._descriptions.get(text)
         return () if known is None else known.files
 
     def provenance(self, text: str, element: Element) -> Provenance | None:
-        """Return the macro calls and includes that created an element of a stored description.
+        """Return the macro calls and includes that produced an element of a stored description.
 
-        Returns None for an unknown text.
+        The result is None for an unknown text.
 
         Raises:
-            LinkwrightError: XAC802, its files have changed since.
+            LinkwrightError: XAC802 if the files of the description have changed since.
         """
         known = self._descriptions.get(text)
         return None if known is None else known.provenance(element)
 
     def read(self, text: str) -> Reading:
-        """Read a description text, plain URDF or SDF.
+        """Return the reading of a text in plain URDF or SDF, from the cache if possible.
 
-        A text that is not XML gives no robot, and the reason.
+        If the text is not XML, the reading has no robot, and its diagnostics contain the reason.
         """
         known = self._descriptions.get(text)
         if known is None:
@@ -213,10 +215,10 @@ class WorldDescription:
 
     Attributes:
         path: the file.
-        sdf: its content, with included models in place of the includes, and materials with the colours of their
-            scripts; None if it is not SDF.
-        diagnostics: all findings about it and its included models.
-        files: the files that were read, the main file first.
+        sdf: the content of the file, in which models replace the includes, and materials have the colours of their
+            scripts. None if the file is not valid SDF.
+        diagnostics: all findings about the file and its included models.
+        files: the files that were read, starting with the main file.
     """
 
     path: Path
@@ -226,7 +228,7 @@ class WorldDescription:
 
 
 def is_world(name: str) -> bool:
-    """Return whether to read a file as SDF, according to its name."""
+    """Return whether the name of a file means that it is read as SDF."""
     return name.endswith(_ENDINGS)
 
 
@@ -238,17 +240,18 @@ def examine_world(
     environment: Mapping[str, str] | None = None,
     overlay: Overlay | None = None,
 ) -> WorldDescription:
-    """Read a world or model in SDF, or in SDF generated by xacro, with all findings about it.
+    """Return a world or model in SDF, or in SDF generated by xacro, with all findings about it.
 
     Args:
-        path: the file; a file whose name ends in ``.xacro``, or that contains xacro tags, is expanded first.
+        path: the file. A file whose name ends in ``.xacro``, or that contains xacro tags, is expanded first.
         arguments: values for the file's ``<xacro:arg>``.
-        packages: package name -> share folder, or a finder.
-        environment: the variables with search paths (`linkwright.sdf.resources`); those of the process by default.
+        packages: the packages, as a mapping of names to share folders, or a finder.
+        environment: the variables with search paths (`linkwright.sdf.resources`); the default is the environment of the
+            process.
         overlay: texts that replace those of files.
 
     Raises:
-        LinkwrightError: the file is not XML, cannot be expanded, or has more links than are read (SDF163).
+        LinkwrightError: if the file is not XML, cannot be expanded, or has too many links (SDF163).
     """
     from dataclasses import replace
 
@@ -278,13 +281,13 @@ def examine_world(
 
 
 def robot_of_text(text: str, name: str) -> Reading:
-    """Read the robot of an SDF text.
+    """Return the robot of an SDF text, and the findings.
 
-    If there is one, warnings that gz would print are left out of the findings.
+    If the text has no errors, warnings that gz would print are left out of the findings.
 
     Args:
         text: the text.
-        name: the file name to use in messages.
+        name: the name of the file in messages.
     """
     from linkwright.sdf.includes import resolve_includes
     from linkwright.sdf.reader import read
@@ -301,7 +304,10 @@ def robot_of_text(text: str, name: str) -> Reading:
 
 
 def _each_once(found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
-    """Yield the findings, but only the first about each kind of unread element and each missing model."""
+    """Yield the findings without repetitions about unread elements and missing models.
+
+    Of these, only the first with the same message is yielded.
+    """
     reported: set[str] = set()
     for diagnostic in found:
         words = f"{diagnostic.code} {diagnostic.severity} {diagnostic.message}"
@@ -313,7 +319,7 @@ def _each_once(found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
 def _document(
     path: Path, arguments: Mapping[str, str] | None, finder: PackageFinder, overlay: Overlay | None
 ) -> tuple[Document, tuple[Diagnostic, ...], tuple[Path, ...]]:
-    """Return the document, the diagnostics of reading it, and the files from which it was made."""
+    """Return the document of a file, its diagnostics, and the files that were read."""
     text = None if overlay is None else overlay.text(str(path))
     if path.suffix != ".xacro":
         document, warnings = _as_written(path, read_bytes(path) if text is None else text)
@@ -339,7 +345,7 @@ def _as_written(path: Path, written: str | bytes) -> tuple[Document, tuple[Diagn
 
 
 def _is_xacro(document: Document) -> bool:
-    """Return whether a file is written for xacro, whatever its name.
+    """Return whether a document contains xacro tags, whatever the name of its file.
 
     Launch files expand such a file before Gazebo reads it.
     """
@@ -364,16 +370,16 @@ def load(
 ) -> Robot:
     """Return the robot of a URDF or xacro file or text.
 
-    A part of a link that urdfdom would drop with an error message is dropped here, too, silently; `examine` reports it.
+    A part of a link that urdfdom would drop with an error message is dropped silently; `examine` reports it.
 
     Args:
-        path_or_text: a path, or a text, which is recognised by its ``<``.
+        path_or_text: the path of a file, or a text, which is recognised by its ``<``.
         arguments: values for the file's ``<xacro:arg>``.
-        packages: for ``$(find)``: package name -> share folder, or a finder.
+        packages: the packages for ``$(find)``, as a mapping of names to share folders, or a finder.
 
     Raises:
-        LinkwrightError: the description cannot be read or expanded, or urdfdom would refuse the model; with all
-            findings.
+        LinkwrightError: all findings, if the description cannot be read or expanded, or if urdfdom would refuse the
+            model.
     """
     with seldom_collected():
         description = examine(path_or_text, arguments=arguments, packages=packages)
@@ -391,22 +397,20 @@ def examine(
     xacro: bool | None = None,
     partly: bool = False,
 ) -> Description:
-    """Read a URDF, xacro or SDF file or text, with its robot and all findings.
-
-    The arguments are those of `load`.
+    """Return a URDF, xacro or SDF file or text as a description with all findings.
 
     Args:
         path_or_text: see `load`.
         arguments: see `load`.
         packages: see `load`.
-        overlay: texts that replace those of files: of the file itself and of all files that it includes or loads.
-        xacro: whether to expand it; None to decide by the file, see `is_xacro`. A plain URDF file is read as urdfdom
-            reads it.
-        partly: whether to accept the parts that can be expanded if others cannot; `Description.problems` then contains
+        overlay: texts that replace those of the file and of all files that it includes or loads.
+        xacro: whether to expand the file with xacro; None to decide by the file, see `is_xacro`. A plain URDF file is
+            read as urdfdom reads it.
+        partly: whether to accept the parts that can be expanded if others cannot. `Description.problems` then contains
             the errors.
 
     Raises:
-        LinkwrightError: the description is not XML, or cannot be expanded.
+        LinkwrightError: if the description is not XML, or cannot be expanded.
     """
     given_text = is_text(path_or_text)
     name = TEXT_NAME if given_text else str(path_or_text)
@@ -450,8 +454,8 @@ def _as_it_stands(
 ) -> Description:
     """Return the description that urdfdom reads from an unexpanded document.
 
-    `is_reported` is set if the remarks already report that. Xacro might then add elements that the file lacks, such as
-    the colours of an included file.
+    `is_reported` says that the remarks already report that the document is not expanded. Findings about missing parts
+    are then left out, because xacro might add these parts, such as the colours of an included file.
     """
     reading = read(document)
     diagnostics = tuple(
@@ -465,16 +469,22 @@ def _holds_unexpanded(found: Diagnostic) -> bool:
 
 
 def _has_open_names(robot: Robot) -> bool:
-    """Return whether link names contain xacro expressions; such a file is not meant for urdfdom."""
+    """Return whether link names contain xacro expressions.
+
+    A file with such names is not intended for urdfdom.
+    """
     return any("$(" in name or "${" in name for name in robot.links)
 
 
 def _as_warning(error: Diagnostic) -> Diagnostic:
-    """Convert an error of the expansion to a warning, for a file that urdfdom reads unexpanded."""
+    """Return an error of the expansion as a warning, for a file that urdfdom reads unexpanded."""
     note = Note(phrase("urdfdom reads the file without expanding it, and ignores the elements of xacro"))
     return error.with_changes(severity=Severity.WARNING, notes=(*error.notes, note))
 
 
 def is_xacro(name: str, root: Element) -> bool:
-    """Return whether to expand a document: by the name of its file, or because it declares the xacro prefix."""
+    """Return whether to expand a document with xacro.
+
+    This is so if the name of the file ends in ``.xacro``, or if the root declares or uses the xacro prefix.
+    """
     return name.endswith(".xacro") or "xmlns:xacro" in root.attributes or root.tag.startswith("xacro:")

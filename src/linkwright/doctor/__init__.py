@@ -1,7 +1,4 @@
-"""Finds common problems of a running graph.
-
-It observes the graph for a few seconds, and examines the recorded data.
-"""
+"""Finds common problems of a running graph from an observation of a few seconds."""
 
 from linkwright.doctor.examination import examine
 from linkwright.doctor.parameter_files import examine_parameter_files

@@ -1,4 +1,4 @@
-"""Problems of time: stamps far from now, and simulated time that only some of the nodes use."""
+"""Problems of time: stamps far from the current time, and simulated time in only some of the nodes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _CLOCK = "/clock"
 
 
 def examine_clocks(seen: Observation) -> Iterator[Diagnostic]:
-    """Find problems with stamps and simulated time."""
+    """Yield findings on stamps and simulated time."""
     yield from _simulated(seen)
     yield from _stamps(seen)
 

@@ -1,4 +1,4 @@
-"""Problems of the environment: settings that keep nodes from discovering each other."""
+"""Problems of the environment: settings that prevent nodes from discovering each other."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _OVER_ZENOH = phrase(
 
 
 def examine_environment(seen: Observation) -> Iterator[Diagnostic]:
-    """Find settings that keep nodes from discovering each other, and report an empty graph."""
+    """Yield findings on settings that prevent discovery, and on an empty graph."""
     if not seen.over_zenoh:
         yield from _domain(seen.environment.get("ROS_DOMAIN_ID", ""))
     if seen.nodes:

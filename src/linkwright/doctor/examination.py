@@ -1,4 +1,4 @@
-"""All examinations of an observed graph."""
+"""Runs all examinations of an observed graph."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _ORDER = (Severity.ERROR, Severity.WARNING, Severity.INFO)
 
 
 def examine(seen: Observation) -> list[Diagnostic]:
-    """Run all examinations, and return the findings (codes ``DOC...``), the most severe first."""
+    """Run all examinations, and return the findings (codes ``DOC...``), most severe first."""
     robots, found = robots_in(seen)
     found += examine_environment(seen)
     found += examine_frames(seen, robots)

@@ -1,4 +1,4 @@
-"""Problems of frames: no transform, two publishers, or no connection to the other frames."""
+"""Problems of frames: no transform, several publishers, or no connection to the other frames."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _OF_THE_WORLD = ("/world_rays", "/world_rays/others")
 
 
 def examine_frames(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnostic]:
-    """Find problems with frames and their transforms."""
+    """Yield findings on frames and their transforms."""
     yield from _contradictions(seen)
     yield from _numbers(seen)
     circle = _cycle(seen.transforms)
@@ -100,7 +100,7 @@ def _numbers(seen: Observation) -> Iterator[Diagnostic]:
 
 
 def _cycle(transforms: Sequence[TransformSeen]) -> list[str]:
-    """Return the frames of a cycle of parents, or an empty list if there is none.
+    """Return the frames of a cycle in the tree of frames, or an empty list if there is none.
 
     The first frame is repeated at the end.
     """
@@ -119,7 +119,7 @@ def _cycle(transforms: Sequence[TransformSeen]) -> list[str]:
 
 
 def _missing(seen: Observation, robot: RobotSeen) -> Iterator[Diagnostic]:
-    """Yield findings on missing frames of a robot's links.
+    """Yield findings on the frames of a robot's links that have no transform.
 
     Frames with the same cause share a finding.
     """
@@ -265,7 +265,7 @@ def _trees(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnosti
     roots = sorted({transform.parent for transform in seen.transforms} - children)
     if len(roots) < 2:
         return
-    # The missing transforms of robots were reported above and need no second finding.
+    # Missing transforms of robots are reported above, so leave them out here.
     broken = {robot.frame(joint.child) for robot in robots for joint in robot.joints} - children
     apart = [root for root in roots if root not in broken]
     if len(apart) < 2:
@@ -305,7 +305,7 @@ def _fixed_frames(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Di
     known = {name for transform in seen.transforms for name in (transform.parent, transform.child)}
     known |= {robot.frame(robot.root) for robot in robots}
     if seen.publishers_of(_WORLD_POSES):
-        known.add(_WORLD)  # the viewer places the frames of tf in the world frame
+        known.add(_WORLD)  # in the viewer, the frames of tf are in the world frame
     roots = sorted(
         {transform.parent for transform in seen.transforms} - {transform.child for transform in seen.transforms}
     )
@@ -331,7 +331,7 @@ def _fixed_frames(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Di
 
 
 def _frames_of_messages(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnostic]:
-    """Yield findings on messages in frames without a transform, except in frames of robots."""
+    """Yield findings on message frames that have no transform and do not belong to a robot."""
     if not seen.transforms:
         return
     known = {name for transform in seen.transforms for name in (transform.parent, transform.child)}
@@ -359,7 +359,7 @@ def _frames_of_messages(seen: Observation, robots: Sequence[RobotSeen]) -> Itera
 
 
 def _another(roots: Sequence[str]) -> Phrase:
-    """Return a hint on what to use instead of a fixed frame that does not exist."""
+    """Return a hint that names a frame to use instead of a fixed frame that does not exist."""
     if not roots:
         return phrase("choose another Fixed Frame")
     if len(roots) == 1:

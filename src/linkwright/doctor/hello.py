@@ -1,7 +1,4 @@
-"""Greetings between computers, and the table of received greetings.
-
-Greetings are sent over a topic and by UDP multicast.
-"""
+"""Greetings between computers, over a topic and by UDP multicast, and the table of received ones."""
 
 from __future__ import annotations
 
@@ -15,14 +12,14 @@ _RULE = "-" * 60
 
 
 def greeting(host: str) -> str:
-    """Return the greeting that a computer sends, which ros2doctor understands."""
+    """Return the greeting of a computer, in the format of ros2doctor."""
     return f"{_GREETING}{host}"
 
 
 def host_of(text: str) -> str:
-    """Return the name of the computer that sent a greeting: its last word.
+    """Return the name of the computer that sent a greeting, or an empty string for an empty greeting.
 
-    The result is empty for an empty text.
+    The name is the last word of the greeting.
     """
     words = text.split()
     return words[-1] if words else ""
@@ -30,7 +27,7 @@ def host_of(text: str) -> str:
 
 @dataclass
 class Greetings:
-    """The greetings sent and received since the last table was printed.
+    """The greetings that were sent and received since the last table was printed.
 
     Attributes:
         own: the name of this computer, whose own greetings do not count.
@@ -60,11 +57,11 @@ class Greetings:
             heard[host] += 1
 
     def take_table(self, topic: str, period: float) -> str:
-        """Return the table as ``ros2 doctor hello`` prints it, and start the next one.
+        """Format the table as ``ros2 doctor hello`` does, and reset the counts.
 
         Args:
             topic: the name of the topic.
-            period: seconds from one table to the next.
+            period: the time covered by one table, in seconds.
         """
         lines = [
             "MULTIMACHINE COMMUNICATION SUMMARY",

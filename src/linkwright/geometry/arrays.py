@@ -1,4 +1,4 @@
-"""Rotations and poses in arrays, vectorised over leading axes, which broadcast.
+"""Rotations and poses in arrays, with operations that broadcast over the leading axes.
 
 A quaternion is x, y, z, w in the last axis, as in ROS messages, and has unit length unless stated otherwise. A rotation
 is active: it rotates vectors of the child frame into the parent frame. Roll, pitch and yaw are angles in radians about
@@ -24,7 +24,9 @@ _PARALLEL = 0.9995
 
 
 def last_axis(values: ArrayLike, length: int, what: str) -> Array:
-    """Return the values as a float64 array, after checking the length of the last axis.
+    """Convert values to a float64 array, after checking the length of the last axis.
+
+    `what` names the values in the error.
 
     Raises:
         ValueError: the last axis has another length.
@@ -98,7 +100,7 @@ def rotate(quaternion: ArrayLike, vector: ArrayLike) -> Array:
     q, v = last_axis(quaternion, 4, "a quaternion"), last_axis(vector, 3, "a vector")
     x, y, z, w = q[..., 0], q[..., 1], q[..., 2], q[..., 3]
     vx, vy, vz = v[..., 0], v[..., 1], v[..., 2]
-    # v + 2 w (u x v) + 2 u x (u x v), where u is the vector part
+    # v + 2 w (u x v) + 2 u x (u x v), where u is the vector part of the quaternion.
     tx, ty, tz = 2 * (y * vz - z * vy), 2 * (z * vx - x * vz), 2 * (x * vy - y * vx)
     rotated = np.empty((*np.broadcast_shapes(q.shape[:-1], v.shape[:-1]), 3))
     rotated[..., 0] = vx + w * tx + y * tz - z * ty
@@ -154,7 +156,8 @@ def quaternion_from_matrix(matrix: ArrayLike) -> Array:
     if m.shape[-2:] != (3, 3):
         raise ValueError(f"a rotation matrix of shape {m.shape}; (..., 3, 3) is expected")
     xx, yy, zz = m[..., 0, 0], m[..., 1, 1], m[..., 2, 2]
-    # four times the products of every two components; the row with the largest square is the best conditioned
+    # The matrix gives four times the products of every two components. The row with the largest square is the best
+    # conditioned.
     products = np.empty((*xx.shape, 4, 4))
     products[..., 0, 0] = 1 + xx - yy - zz
     products[..., 1, 1] = 1 - xx + yy - zz
@@ -198,7 +201,7 @@ def invert(b_in_a: ArrayLike) -> Array:
 
 
 def row_from_pose(pose: Pose) -> Array:
-    """Convert a pose of a description to a row; shape (7,)."""
+    """Convert a description's pose to a row x, y, z, qx, qy, qz, qw; shape (7,)."""
     return np.array((*pose.xyz, *quaternion_of(pose)))
 
 

@@ -1,4 +1,4 @@
-"""The numbers in COLLADA files, read with arrays."""
+"""Reading of COLLADA files into arrays."""
 
 from __future__ import annotations
 
@@ -14,24 +14,24 @@ from linkwright.geometry.polyhedron import Faces
 
 
 def read_collada(data: bytes) -> ColladaFile[PlainMesh, Array] | None:
-    """Return the meshes in the scene of a file, or None in the same cases as `read_scene`."""
+    """Return the meshes in the scene of a file, or None in the cases described at `read_scene`."""
     return read_scene(data, Arrays())
 
 
 class Arrays:
-    """Creates numpy meshes and matrices of shape (4, 4)."""
+    """The implementation of `Numbers` with numpy: meshes, and matrices of shape (4, 4)."""
 
     def identity(self) -> Array:
         """Return the identity matrix."""
         return np.eye(4)
 
     def moved(self, matrix: Array, tag: str, text: str | None) -> Array:
-        """Return the product of a matrix and the matrix of a transform."""
+        """Return the product of a matrix and the matrix of a transform element."""
         moved: Array = matrix @ _transform(tag, parse_numbers(text, np.float32).astype(np.float64))
         return moved
 
     def faces(self, tag: str, texts: list[str], counted: str, width: int, column: int, limits: Limits) -> Faces:
-        """Return the triangles of an element."""
+        """Return the triangles of a ``<triangles>``, ``<polylist>`` or ``<polygons>`` element."""
         rows = [parse_numbers(text, np.int64).reshape(-1, width) for text in texts]
         if tag == "triangles":
             counts: NDArray[np.int64] = np.full(len(rows[0]) // 3, 3, np.int64)
@@ -48,13 +48,13 @@ class Arrays:
         return fans(indices[:, column], counts)
 
     def mesh(self, text: str, faces: list[Faces]) -> PlainMesh:
-        """Return the mesh with the corners in a text and the triangles of all elements."""
+        """Return a mesh from the text of its vertices and the triangles of its elements."""
         points = parse_numbers(text, np.float32).reshape(-1, 3).astype(np.float64)
         return PlainMesh(points, np.concatenate([np.zeros((0, 3), dtype=np.int64), *faces]))
 
 
 def _transform(tag: str, values: Array) -> Array:
-    """Return the matrix of a transform.
+    """Return the matrix of a transform element, given its tag and numbers.
 
     As in pycollada, the axis of a rotation is not normalised.
     """

@@ -1,6 +1,6 @@
-"""The numbers in small COLLADA files, read in plain Python.
+"""Reading of small COLLADA files in plain Python.
 
-They are rounded to 32 bits, as in pycollada.
+Numbers are rounded to 32 bits, as in pycollada.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ _Mesh = tuple[list[Vector3], list[_Triangle]]
 
 
 def read_triangles(data: bytes, most: int) -> _Mesh | None:
-    """Return the corners (in m) and triangles of a file's scene.
+    """Return the vertices (in m) and triangles of a file's scene.
 
-    The result is None if there are more than `most` triangles, and in the same cases as for `read_scene`.
+    Returns None if there are more than `most` triangles, and in the cases described at `read_scene`.
     """
     file: ColladaFile[_Mesh, _Rows] | None = read_scene(data, Lists())
     if file is None or sum(len(faces) for (_, faces), _ in file.placed) > most:
@@ -41,21 +41,24 @@ def read_triangles(data: bytes, most: int) -> _Mesh | None:
 
 
 class Lists:
-    """Creates meshes as lists of corners and triangles, and matrices as lists of rows."""
+    """The implementation of `Numbers` in plain Python.
+
+    Meshes are lists of vertices and triangles, and matrices are lists of rows.
+    """
 
     def identity(self) -> _Rows:
         """Return the identity matrix."""
         return [[float(row == column) for column in range(4)] for row in range(4)]
 
     def moved(self, matrix: _Rows, tag: str, text: str | None) -> _Rows:
-        """Return the product of a matrix and the matrix of a transform."""
+        """Return the product of a matrix and the matrix of a transform element."""
         columns = list(zip(*_transform(tag, _numbers(text or ""), self.identity()), strict=True))
         return [[sum(a * b for a, b in zip(row, column, strict=True)) for column in columns] for row in matrix]
 
     def faces(
         self, tag: str, texts: list[str], counted: str, width: int, column: int, limits: Limits
     ) -> list[_Triangle]:
-        """Return the triangles of an element."""
+        """Return the triangles of a ``<triangles>``, ``<polylist>`` or ``<polygons>`` element."""
         rows = [_integers(text) for text in texts]
         indices = [value for row in rows for value in row]
         counts = [len(row) // width for row in rows]
@@ -76,14 +79,14 @@ class Lists:
         return found
 
     def mesh(self, text: str, faces: list[list[_Triangle]]) -> _Mesh:
-        """Return the mesh with the corners in a text and the triangles of all elements."""
+        """Return a mesh from the text of its vertices and the triangles of its elements."""
         numbers = _numbers(text)
         points = list(zip(numbers[::3], numbers[1::3], numbers[2::3], strict=True))
         return points, [item for part in faces for item in part]
 
 
 def _numbers(text: str) -> list[float]:
-    """Return the numbers in a text, rounded to 32 bits."""
+    """Parse numbers separated by whitespace, rounded to 32 bits."""
     if "_" in text:
         raise Unusual
     words = text.split()
@@ -103,7 +106,7 @@ def _integers(text: str) -> list[int]:
 
 
 def _transform(tag: str, values: list[float], matrix: _Rows) -> _Rows:
-    """Return the matrix of a transform, by changing the given identity matrix."""
+    """Write the matrix of a transform element into an identity matrix, and return it."""
     if tag == "matrix":
         if len(values) != 16:
             raise Unusual

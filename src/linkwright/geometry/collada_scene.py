@@ -1,7 +1,7 @@
-"""Reading of the scene of usual COLLADA files.
+"""Reading of the scene in COLLADA files without unusual content.
 
-Importing trimesh takes longer than reading most of them. This module reads the XML tree. Numbers are read with arrays
-(`collada`) or, for small files, in plain Python (`collada_lists`).
+This module reads the XML tree, which is faster than importing trimesh. Numbers are read into arrays (`collada`) or, for
+small files, in plain Python (`collada_lists`).
 """
 
 from __future__ import annotations
@@ -33,32 +33,40 @@ MatrixT = TypeVar("MatrixT")
 
 
 class Unusual(Exception):  # noqa: N818 - no error: another reader takes the file
-    """Raised when a file has content that a plain reader does not support."""
+    """Raised when a file has content that a simple reader does not support."""
 
 
 class Numbers(Protocol[MadeT_co, MatrixT, FacesT]):
-    """Creates meshes and matrices from texts.
+    """The interface that creates meshes and matrices from the text of elements.
 
-    Each method raises `Unusual` or ValueError for unusual texts.
+    Each method raises `Unusual` or ValueError for text that it does not support.
     """
 
     def identity(self) -> MatrixT:
         """Return the identity matrix."""
 
     def moved(self, matrix: MatrixT, tag: str, text: str | None) -> MatrixT:
-        """Return the product of a matrix and the matrix of a transform.
+        """Return the product of a matrix and the matrix of a transform element.
 
         The axis of a rotation is not normalised, as in pycollada.
         """
 
     def faces(self, tag: str, texts: list[str], counted: str, width: int, column: int, limits: Limits) -> FacesT:
-        """Return the triangles of ``<triangles>``, ``<polylist>`` or ``<polygons>``.
+        """Return the triangles of a ``<triangles>``, ``<polylist>`` or ``<polygons>`` element.
 
-        A polygon becomes a fan.
+        Polygons are split into fans.
+
+        Args:
+            tag: the tag of the element.
+            texts: the texts with indices.
+            counted: the text with the number of corners of each polygon, for ``<polylist>``.
+            width: the number of indices for each corner.
+            column: the column of the indices of vertices.
+            limits: the columns of indices to check, and the limit of each.
         """
 
     def mesh(self, text: str, faces: list[FacesT]) -> MadeT_co:
-        """Return the mesh with the corners in a text and the triangles of all elements."""
+        """Return a mesh from the text of its vertices and the triangles of its elements."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +79,7 @@ class _Source:
 
 
 class ColladaFile(Generic[MeshT, MatrixT]):
-    """The meshes of a COLLADA file, in its own unit.
+    """The meshes of a COLLADA file, in the file's unit.
 
     Attributes:
         unit: metres per unit.
@@ -86,8 +94,8 @@ class ColladaFile(Generic[MeshT, MatrixT]):
 def read_scene(data: bytes, numbers: Numbers[MeshT, MatrixT, Any]) -> ColladaFile[MeshT, MatrixT] | None:
     """Return the meshes in the scene of a file.
 
-    Numbers are rounded to 32 bits, as in pycollada. The result is None for a file with unusual content or mistakes,
-    which is left to trimesh.
+    Numbers are rounded to 32 bits, as in pycollada. Returns None for a file with unusual content or mistakes, which
+    must be read by trimesh.
     """
     if _DECLARATION.search(data):
         return None
@@ -155,7 +163,7 @@ class _File(Generic[MeshT, MatrixT]):
     # --- scene ------------------------------------------------------------------------------------------------
 
     def _placed(self, node: _Node, above: MatrixT) -> Iterator[tuple[MeshT, MatrixT]]:
-        """Yield the meshes in a node, each with the matrix of its frame in the frame of the file."""
+        """Iterate over the meshes in a node, with their frames as matrices in the file's frame."""
         self._places += 1
         if self._places > _MOST_PLACES:
             raise Unusual
@@ -184,7 +192,7 @@ class _File(Generic[MeshT, MatrixT]):
         return self._meshes[name]
 
     def _of_geometry(self, mesh: _Node) -> tuple[MeshT, bool]:
-        """Return a mesh, and whether it has triangles."""
+        """Return the mesh of a ``<mesh>`` element, and whether it has triangles."""
         sources = {f"#{element.get('id', '')}": self._source(element) for element in self._all(mesh, "source")}
         vertices = self._only(mesh, "vertices")
         inputs = {
@@ -211,7 +219,7 @@ class _File(Generic[MeshT, MatrixT]):
         return _Source(count // width, width, text)
 
     def _faces(self, part: _Node, tag: str, rows: dict[str, int], corners: str) -> Any:
-        """Return the triangles of ``<triangles>``, ``<polylist>`` or ``<polygons>``."""
+        """Return the triangles of a ``<triangles>``, ``<polylist>`` or ``<polygons>`` element."""
         inputs = [
             (element.get("semantic"), element.get("source", ""), int(element.get("offset", "")))
             for element in self._all(part, "input")
@@ -228,7 +236,7 @@ class _File(Generic[MeshT, MatrixT]):
 
 
 def _reference(node: _Node) -> str:
-    """Return the ID to which a ``url`` refers in the same file."""
+    """Return the ID in a node's ``url``, which refers to an element of the same file."""
     mark, _, name = node.get("url", "").partition("#")
     if mark or not name:
         raise Unusual

@@ -1,4 +1,4 @@
-"""Convex decomposition of surfaces, for physics engines."""
+"""Convex decomposition of surfaces for physics engines."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ _MOST_CORNERS = 2000
 def convex_pieces(vertices: Array, faces: Faces, most: int) -> list[Array]:
     """Decompose a static surface into convex pieces.
 
-    A connected part that is nearly convex becomes one piece, its hull. Of any other part, each flat face becomes a
-    plate that extends `THICKNESS` inwards, or, if the face is not convex, each of its triangles does. Rooms thus stay
-    hollow, and tables keep their legs. If that would result in too many pieces, the parts with the most plates become
-    hulls.
+    A connected part that is nearly convex becomes one piece, its hull. In all other parts, each flat face becomes a
+    plate that extends `THICKNESS` inwards; if the face is not convex, each of its triangles becomes a plate. Thus
+    rooms stay hollow, and tables keep their legs. If that would result in too many pieces, the parts with the most
+    plates become hulls.
 
     Args:
         vertices: corners in m, shape (vertices, 3).
@@ -71,7 +71,7 @@ def thickened(corners: Array) -> Array:
 
 
 def _components(faces: Faces, count: int) -> list[NDArray[np.int64]]:
-    """Return the indices of the faces in each connected part."""
+    """Return the indices of the faces in each connected component."""
     labels = _joined(faces, count)[faces[:, 0]]
     order = np.argsort(labels, kind="stable")
     starts = np.flatnonzero(np.diff(labels[order], prepend=-1))
@@ -79,9 +79,9 @@ def _components(faces: Faces, count: int) -> list[NDArray[np.int64]]:
 
 
 def _joined(groups: NDArray[np.int64], count: int) -> NDArray[np.int64]:
-    """Return the minimum index that is connected to each index below a count.
+    """Return, for each index below a count, the smallest index connected to it.
 
-    Each row of `groups` connects its indices.
+    Each row of `groups` connects its indices with each other.
     """
     labels = np.arange(count)
     while True:
@@ -105,7 +105,7 @@ def _is_nearly_convex(vertices: Array, faces: Faces, corners: Array) -> bool:
 
 
 def _plates(vertices: Array, faces: Faces, most: int) -> list[Array]:
-    """Return a plate for each flat face; stop once there are more than `most`."""
+    """Return plates for the flat faces of a part, but stop once there are more than `most`."""
     corners = vertices[faces]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     lengths = np.linalg.norm(normals, axis=1)

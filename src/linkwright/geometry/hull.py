@@ -1,7 +1,8 @@
-"""The convex hull of points in space, by the quickhull algorithm.
+"""The convex hull of points in space, computed by the quickhull algorithm.
 
-Source: Barber, Dobkin, Huhdanpaa: *The Quickhull Algorithm for Convex Hulls*, ACM TOMS 22, 1996. It starts from a
-tetrahedron. While a face has points outside it, the farthest of them replaces all faces that are visible from it.
+Source: Barber, Dobkin, Huhdanpaa: *The Quickhull Algorithm for Convex Hulls*, ACM TOMS 22, 1996. The algorithm starts
+from a tetrahedron. While a face has points outside it, the farthest of them replaces all faces that are visible from
+it.
 """
 
 from __future__ import annotations
@@ -40,12 +41,12 @@ def convex_hull(points: Array) -> Faces | None:
 
 
 class _Hull:
-    """A hull under construction, from the first tetrahedron to the last face.
+    """A hull under construction, which starts as a tetrahedron.
 
     Attributes:
-        edges: start and end of each directed edge -> its face. The edge in the opposite direction belongs to a
+        edges: the face of each directed edge, by start and end. The edge in the opposite direction belongs to a
             neighbour.
-        outside: face -> the points outside it; each point is assigned to only one face.
+        outside: the points outside each face; each point is assigned to only one face.
     """
 
     def __init__(self, points: Array, start: tuple[int, int, int, int], near: float) -> None:
@@ -60,7 +61,7 @@ class _Hull:
         self._add([(a, b, c), (a, d, b), (b, d, c), (c, d, a)], np.arange(len(points), dtype=np.int64))
 
     def grown(self) -> Faces:
-        """Add points until none is outside, and return the faces."""
+        """Add points until none is outside the hull, and return the faces."""
         while self.outside:
             face, candidates = self.outside.popitem()
             normal, level = self.planes[face]
@@ -78,7 +79,7 @@ class _Hull:
     def _seen_from(self, face: int, point: Array) -> tuple[set[int], list[tuple[int, int]]]:
         """Return the faces that are visible from a point, and the edges around them.
 
-        The search starts from one of these faces.
+        `face` is one of the visible faces, from which the search starts.
         """
         seen, hidden = {face}, set()
         waiting = [face]
@@ -106,9 +107,9 @@ class _Hull:
         return self.outside.pop(face, _NONE)
 
     def _add(self, triangles: list[Triangle], loose: Indices) -> None:
-        """Add faces, and assign the loose points to them.
+        """Add faces, and assign loose points to them.
 
-        A point is assigned to the face that it is farthest outside of, if there is one.
+        A point is assigned to the face that it is farthest outside of, or dropped if it is inside all of them.
         """
         corners = self.points[np.array(triangles, dtype=np.int64)]
         normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -140,7 +141,7 @@ def _edges(triangle: Triangle) -> Iterable[tuple[int, int]]:
 
 
 def _tetrahedron(points: Array, near: float) -> tuple[int, int, int, int] | None:
-    """Return four points that are far apart, or None if all points are coplanar.
+    """Return the indices of four points that are far apart, or None if all points are coplanar.
 
     The fourth point is below the plane of the others.
     """

@@ -1,4 +1,4 @@
-"""Mass, centre of mass and inertia tensor of a rigid body, and derived quantities."""
+"""Mass, centre of mass and inertia tensor of a rigid body, and quantities derived from them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ LEAST_MASS = 1e-30
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PrincipalAxes:
-    """The frame in which the inertia tensor is diagonal.
+    """The principal moments of a body, and the axes in which its inertia tensor is diagonal.
 
     Attributes:
         moments: the principal moments in kg m2, smallest first; shape (3,).
@@ -31,13 +31,14 @@ class PrincipalAxes:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MassProperties:
-    """Mass properties of a rigid body in some frame, which is the link's frame for links.
+    """Mass properties of a rigid body in a frame, which is the link's frame for links.
 
     Attributes:
         mass: the mass in kg.
         center: the centre of mass in m; shape (3,).
-        inertia: inertia tensor about the centre of mass in kg m2, in the axes of the frame; shape (3, 3). Products of
-            inertia have the sign of the tensor's entries, as in URDF and Gazebo: ``ixy = -integral(x y dm)``.
+        inertia: the inertia tensor about the centre of mass in kg m2, in the axes of the frame; shape (3, 3). Products
+            of inertia have the sign of the tensor's entries, as in URDF and Gazebo: ``ixy = -integral(x y
+            dm)``.
     """
 
     mass: float
@@ -45,21 +46,21 @@ class MassProperties:
     inertia: Array = field(default_factory=lambda: np.zeros((3, 3)))
 
     def times(self, factor: float) -> MassProperties:
-        """Return the same body with its density multiplied by a factor."""
+        """Return the mass properties of the same body with its density multiplied by a factor."""
         return MassProperties(self.mass * factor, self.center, self.inertia * factor)
 
     def with_mass(self, mass: float) -> MassProperties:
-        """Return the same body with the density that results in a mass, in kg.
+        """Return the mass properties of the same body with another mass, in kg.
 
         Raises:
-            ValueError: the body has no mass that could be multiplied.
+            ValueError: the body has no mass that could be scaled.
         """
         if not self.mass > LEAST_MASS:
             raise ValueError("a body without mass has no shape to spread another mass over")
         return self.times(mass / self.mass)
 
     def moved(self, pose: Pose) -> MassProperties:
-        """Return the mass properties in a parent frame, given the pose of the body's frame in it."""
+        """Return the mass properties in a parent frame, in which the body's frame has a pose."""
         rotation = np.array(rotation_of(pose))
         center = rotation @ self.center + np.asarray(pose.xyz)
         return MassProperties(self.mass, center, rotation @ self.inertia @ rotation.T)
@@ -67,7 +68,7 @@ class MassProperties:
     def inertia_about(self, point: ArrayLike) -> Array:
         """Return the inertia tensor about another point of the frame; shape (3, 3).
 
-        It is computed by the parallel axis theorem (Steiner).
+        The parallel axis theorem (Steiner) is used.
         """
         arm = self.center - np.asarray(point, dtype=np.float64)
         return self.inertia + self.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
@@ -83,8 +84,8 @@ class MassProperties:
         """Return the edge lengths of the uniform box with this mass and these principal moments.
 
         The lengths are in m, along the principal axes; shape (3,). A box with edges a, b, c has ``I1 = m (b2 + c2) /
-        12`` and so on, which is solved for the edges. The result is None for a body that has no mass, or for a tensor
-        that no body can have.
+        12`` and so on, which is solved for the edges. Returns None for a body that has no mass, or for a tensor that no
+        body can have.
         """
         if not self.mass > LEAST_MASS:
             return None
@@ -97,7 +98,10 @@ class MassProperties:
 
 
 def combine(parts: Iterable[MassProperties]) -> MassProperties:
-    """Return the union of several bodies in one frame; where they overlap, their masses add up."""
+    """Return the mass properties of several bodies in one frame.
+
+    Where bodies overlap, their masses add up.
+    """
     bodies = list(parts)
     mass = sum(body.mass for body in bodies)
     if not mass > 0:

@@ -1,8 +1,8 @@
-"""Diagnoses mesh files that their parser rejects.
+"""Diagnosis of mesh files that a parser rejects: the line, element or number that is wrong.
 
-It finds the line, element or number that is wrong. The parser's own messages are in terms of its code, or of Python.
-This module examines only files that the parser could not read, for common faults: a truncated file, another format than
-the extension, malformed numbers, missing references.
+Error messages of parsers are in terms of their code, or of Python. This module examines only files that the parser
+could not read, for common faults: a truncated file, another format than the extension, malformed numbers, missing
+references.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from linkwright.xmltree import Element, parse
 
 _WEB_PAGE = lazy_pattern(rb"\s*<(?:!doctype\s+)?html", re.IGNORECASE)
 
-_HEADER, _TRIANGLE = 84, 50  # sizes in a binary STL, in bytes
+_HEADER, _TRIANGLE = 84, 50  # Sizes in a binary STL, in bytes.
 _GLB_HEADER, _CHUNK_HEADER = 12, 8
 _JSON_CHUNK = 0x4E4F534A
 _COMPONENTS = {5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4}
@@ -30,7 +30,7 @@ _NUMBERS_OF = {"matrix": 16, "translate": 3, "scale": 3, "rotate": 4}
 
 
 def fault_in(data: bytes, kind: str) -> Phrase | None:
-    """Return the fault of a mesh file, or None if none is found.
+    """Return a description of the first fault of a mesh file, or None if none is found.
 
     Args:
         data: the content of the file.
@@ -171,7 +171,7 @@ def _element_faults(element: Element, known: set[str]) -> Iterator[Phrase]:
 
 
 def _index_faults(mesh: Element) -> Iterator[Phrase]:
-    """Yield faults for indices that are out of range of the mesh's lists."""
+    """Iterate over the faults of indices that are out of range of the mesh's lists."""
     counts = [element.attributes.get("count", "") for element in mesh.walk() if element.tag == "accessor"]
     longest = max((int(count) for count in counts if count.isdecimal()), default=0)
     for element in mesh.walk():
@@ -225,9 +225,9 @@ def _gltf_faults(data: bytes) -> Iterator[Phrase]:
 
 
 def _document_faults(text: bytes, binary: int | None) -> Iterator[Phrase]:
-    """Yield the faults of the JSON.
+    """Iterate over the faults of a glTF file's JSON.
 
-    `binary` is the size in bytes of its first buffer, if that is known.
+    `binary` is the size of its first buffer in bytes, or None if that is unknown.
     """
     try:
         document = json.loads(text)

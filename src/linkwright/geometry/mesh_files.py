@@ -1,4 +1,4 @@
-"""Parsing of mesh files; the only module that imports trimesh."""
+"""Parsing of mesh files by trimesh, or by simpler readers where these suffice."""
 
 from __future__ import annotations
 
@@ -35,8 +35,8 @@ class PlacedMesh(NamedTuple):
     """An instance of a mesh in a file.
 
     Attributes:
-        mesh: a `trimesh.Trimesh` or a `PlainMesh`; it has triangles.
-        matrix: the homogeneous matrix of its frame in the frame of the file, in the file's unit; shape (4, 4).
+        mesh: a `trimesh.Trimesh` or a `PlainMesh` with triangles.
+        matrix: the homogeneous matrix of the mesh's frame in the frame of the file, in the file's unit; shape (4, 4).
         unit: metres per unit of the file.
         names: the names of the mesh and of the instance in the file.
     """
@@ -48,16 +48,16 @@ class PlacedMesh(NamedTuple):
 
     @property
     def faces(self) -> NDArray[np.int64]:
-        """Indices of corners, shape (faces, 3).
+        """The indices of the triangles' corners, shape (faces, 3).
 
-        Their order is reversed if the matrix mirrors, so that the outside stays outside.
+        If the matrix mirrors the mesh, the order of corners is reversed, so that the outside stays outside.
         """
         faces = np.asarray(self.mesh.faces, dtype=np.int64)
         return faces[:, ::-1] if np.linalg.det(self.matrix[:3, :3]) < 0 else faces
 
 
 class BadMeshError(Exception):
-    """Raised when a mesh file cannot be used; the text gives the reason.
+    """Raised when a mesh file cannot be used; the message gives the reason.
 
     Attributes:
         why: the reason, a phrase in the terms of the file.
@@ -69,7 +69,9 @@ class BadMeshError(Exception):
 
 
 def placed_meshes(data: bytes, kind: str, *, is_plain: bool = False, **options: Any) -> list[PlacedMesh]:
-    """Return the triangle meshes of an STL, COLLADA, OBJ or glTF file, without lines and points.
+    """Return the triangle meshes of an STL, COLLADA, OBJ or glTF file.
+
+    Lines and points are ignored.
 
     STL and OBJ have no unit, and URDF takes their numbers as metres. As in RViz, the unit of COLLADA is returned, and
     its up axis is not applied.
@@ -111,10 +113,10 @@ def placed_meshes(data: bytes, kind: str, *, is_plain: bool = False, **options: 
 
 
 def declared_triangles(path: Path) -> int | None:
-    """Return the number of triangles that a file declares, without parsing it.
+    """Return a lower bound of the number of triangles in a file, without parsing the file.
 
-    Parsing takes a minute for a large file. At least as many triangles are read from the file. The result is None if
-    only parsing can determine the number (COLLADA, glTF), and if the file cannot be read.
+    Parsing a large file takes a minute. Returns None if the number can only be determined by parsing (COLLADA, glTF),
+    or if the file cannot be read.
     """
     kind = path.suffix.lower()
     try:
@@ -131,7 +133,7 @@ def declared_triangles(path: Path) -> int | None:
 
 
 def _plain(data: bytes, kind: str) -> list[PlacedMesh] | None:
-    """Return the triangles of a usual STL, COLLADA or OBJ file, or None for any other."""
+    """Return the meshes of a simple STL, COLLADA or OBJ file, or None for other files."""
     nameless: frozenset[str] = frozenset()
     if kind == "dae":
         file = read_collada(data)
@@ -144,11 +146,11 @@ def _parsed(data: bytes, kind: str, **options: Any) -> Iterator[PlacedMesh]:
     if kind == "stl" and (stl := read_stl(data)) is not None:
         yield PlacedMesh(stl, np.eye(4), 1.0, frozenset((stl.name,)))
         return
-    import trimesh  # costs 0.1 s, and checks of most robots need no mesh
+    import trimesh  # The import takes 0.1 s, and checks of most robots need no mesh.
 
     logger = logging.getLogger("trimesh")
     if not logger.handlers:
-        logger.addHandler(logging.NullHandler())  # its warnings are of no use to the user
+        logger.addHandler(logging.NullHandler())  # trimesh's warnings are of no use to users.
     scene: Any = _collada_scene(data, **options) if kind == "dae" else _scene(data, kind, **options)
     for node in scene.graph.nodes_geometry:
         matrix, name = scene.graph[node]
@@ -156,7 +158,7 @@ def _parsed(data: bytes, kind: str, **options: Any) -> Iterator[PlacedMesh]:
         if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces):
             unit = _collada_unit(mesh) if kind == "dae" else 1.0
             yield PlacedMesh(mesh, np.asarray(matrix, dtype=np.float64), unit, frozenset((name, node)))
-    scene.__dict__.clear()  # breaks the reference cycle that keeps the file's bytes in memory
+    scene.__dict__.clear()  # This breaks the reference cycle that keeps the file's bytes in memory.
 
 
 def _scene(data: bytes, kind: str, **options: Any) -> Any:
@@ -166,7 +168,7 @@ def _scene(data: bytes, kind: str, **options: Any) -> Any:
 
 
 def _collada_scene(data: bytes, **options: Any) -> Any:
-    """Return the scene of a COLLADA file, without the materials that cannot be read.
+    """Load the scene of a COLLADA file, ignoring materials that cannot be read.
 
     pycollada can skip broken materials, but also skips the geometry that uses them. The first attempt is therefore
     strict, and a file that it rejects is read again without the references to these materials.
@@ -180,10 +182,10 @@ def _collada_scene(data: bytes, **options: Any) -> Any:
 
 
 def _well_formed(data: bytes) -> bytes | None:
-    """Return a COLLADA file as well-formed XML, or None.
+    """Return a COLLADA file with mistakes that Gazebo and RViz tolerate as well-formed XML.
 
-    The result is None unless the file has mistakes that Gazebo and RViz tolerate. Exporters write such files: assimp
-    names the nodes of an STL ``<STL_BINARY>``.
+    Returns None if the file has no such mistakes, or others. Exporters write such files: assimp names the nodes of an
+    STL ``<STL_BINARY>``.
     """
     try:
         document, forgiven = parse_as_tinyxml(decode(data, "<mesh>"), "<mesh>", foreign(""))
@@ -213,10 +215,7 @@ def _without_broken_materials(data: bytes) -> bytes:
 
 
 def parser_fault(error: Exception) -> Phrase:
-    """Return a phrase with the first line of a parser's error.
-
-    It is used if no better reason is known.
-    """
+    """Return a description of a parser's error, for faults without a better description."""
     if isinstance(error, FileNotFoundError):
         return phrase("the file '{name}' that it references does not exist", name=str(error.filename or error))
     lines = str(error).strip().splitlines()
@@ -224,9 +223,9 @@ def parser_fault(error: Exception) -> Phrase:
 
 
 def file_resolver(path: str) -> Any:
-    """Return a resolver that gives the parser the files next to a mesh file.
+    """Return an object with which trimesh reads the files next to a mesh file.
 
-    It is None for STL, which names no files.
+    Returns None for STL, which refers to no files.
     """
     if path.lower().endswith(".stl"):
         return None
@@ -236,7 +235,7 @@ def file_resolver(path: str) -> Any:
 
 
 def _collada_unit(mesh: Any) -> float:
-    """Return the metres per unit of a COLLADA file.
+    """Return the metres per unit of a COLLADA file, from a mesh.
 
     trimesh stores the unit with the meshes, and does not apply it to the numbers.
     """

@@ -1,6 +1,6 @@
-"""Mesh files with their materials, as triangles grouped by material.
+"""Reading of mesh files with their materials, as triangles grouped by material.
 
-The rules are RViz's, which the page follows, too.
+The rules for materials are those of RViz, which the page follows, too.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ class Triangles:
 
     Attributes:
         positions: the corners in m, shape (N, 3).
-        indices: three per triangle, counterclockwise from outside; flat.
-        normals: shape (N, 3), or None for flat triangles.
+        indices: the indices of corners in a flat array, three per triangle, counterclockwise from outside.
+        normals: the normals at the corners, shape (N, 3), or None for flat triangles.
         coordinates: texture coordinates from the upper left corner of the texture, shape (N, 2), or None.
         colors: red, green, blue and alpha of each corner, 0 to 1, shape (N, 4), or None.
     """
@@ -64,7 +64,7 @@ class MeshPart:
 
     Attributes:
         triangles: the triangles.
-        own: the material from the file; None if the material of the description applies.
+        own: the material from the file; None to use the material of the description.
         names: the names of the part in the file.
     """
 
@@ -73,7 +73,7 @@ class MeshPart:
     names: frozenset[str] = frozenset()
 
     def moved(self, offset: Array) -> MeshPart:
-        """Return the part moved by an offset in m, shape (3,)."""
+        """Return a copy of the part moved by an offset in m, shape (3,)."""
         return replace(self, triangles=replace(self.triangles, positions=self.triangles.positions + offset))
 
 
@@ -82,10 +82,10 @@ def read_parts(path: Path, *, resolver: Any) -> list[MeshPart]:
 
     Args:
         path: the path of the file.
-        resolver: provides the files that the mesh file names to trimesh, by ``get(name)``.
+        resolver: provides files that the mesh file refers to, by ``get(name)``, as trimesh expects.
 
     Raises:
-        BadMeshError: the file cannot be read; the text gives the reason.
+        BadMeshError: the file cannot be read; the message gives the reason.
         LinkwrightError: INR104, a library for the file is not installed.
     """
     kind = path.suffix.lower().removeprefix(".")
@@ -118,14 +118,14 @@ def _triangles(placed: PlacedMesh, matrix: Array, *, smooth: bool) -> Triangles:
     uv = getattr(mesh.visual, "uv", None)
     coordinates = None
     if uv is not None and np.shape(uv) == (len(positions), 2):
-        coordinates = np.asarray(uv, dtype=np.float64) * (1, -1) + (0, 1)  # trimesh counts from the bottom
+        coordinates = np.asarray(uv, dtype=np.float64) * (1, -1) + (0, 1)  # trimesh counts from the bottom.
     return Triangles(positions, faces.reshape(-1), normals, coordinates, _vertex_colors(mesh, len(positions)))
 
 
 def _normals(mesh: Any, positions: Array, faces: Any, matrix: Array) -> Array | None:
-    """Return the normals at the corners, or None if one of them is zero.
+    """Return the unit normals at the corners, or None if one of them is zero.
 
-    They are the normals in the file, or else averages of the triangles' normals.
+    If the file contains no normals, the normals of the triangles are averaged.
     """
     if "vertex_normals" in mesh._cache.cache and len(mesh.vertex_normals) == len(positions):
         normals = np.asarray(mesh.vertex_normals, dtype=np.float64) @ np.linalg.pinv(matrix[:3, :3])
@@ -153,7 +153,7 @@ def _own(mesh: Any, kind: str) -> OwnLook | None:
         return OwnLook((1.0, 1.0, 1.0)) if kind != "dae" else None
     material = getattr(mesh.visual, "material", None)
     if material is None:
-        return OwnLook((1.0, 1.0, 1.0)) if kind in ("glb", "gltf") else None  # the default material of glTF is white
+        return OwnLook((1.0, 1.0, 1.0)) if kind in ("glb", "gltf") else None  # glTF's default is white.
     if kind == "obj":
         color = material.kwargs.get("kd", np.asarray(material.diffuse[:3]) / 255.0)
         return OwnLook(_rgb(color), _png(getattr(material, "image", None)))
@@ -168,7 +168,7 @@ def _rgb(color: Any) -> tuple[float, float, float]:
 
 
 def read_png(path: Path) -> bytes | None:
-    """Return the image in a file as PNG; None if it is not an image, or Pillow is not installed."""
+    """Return an image file as PNG, or None if it is not an image or Pillow is missing."""
     try:
         return _as_png(path.read_bytes())
     except (ModuleNotFoundError, OSError, ValueError, SyntaxError):
@@ -176,20 +176,20 @@ def read_png(path: Path) -> bytes | None:
 
 
 def _png(image: Any) -> bytes | None:
-    """Return an image as PNG.
+    """Return an image as PNG data, or None if the image is None.
 
-    If it was read from PNG data, this data is returned, because encoding is slow.
+    The data that the image was read from is reused if it is PNG, because encoding is slow.
     """
     if image is None:
         return None
-    source = getattr(image, "fp", None)  # Pillow keeps it until the pixels are decoded
+    source = getattr(image, "fp", None)  # Pillow keeps the file until the pixels are decoded.
     return _as_png(source.getvalue()) if isinstance(source, BytesIO) else _encoded(image)
 
 
 @lru_cache(maxsize=8)
 def _as_png(data: bytes) -> bytes:
-    """Return an image file as PNG; the results are cached, because many meshes share an image."""
-    from PIL import Image  # imported here, because it belongs to an extra
+    """Convert image data to PNG; results are cached, because many meshes share an image."""
+    from PIL import Image  # Pillow is an optional extra.
 
     image = Image.open(BytesIO(data))
     if image.format != "PNG":

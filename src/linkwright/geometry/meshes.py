@@ -1,7 +1,4 @@
-"""Reading of the triangles in mesh files.
-
-They are in metres and in the frame in which RViz shows them.
-"""
+"""Reading of the triangles in mesh files, in metres and in the frame in which RViz shows them."""
 
 from __future__ import annotations
 
@@ -70,10 +67,9 @@ class TriangleMesh:
 
     @cached_property
     def solid(self) -> MassProperties:
-        """The mass properties for a density of 1 kg/m3.
+        """The mass properties of the mesh as a solid with a density of 1 kg/m3.
 
-        They are the mesh's if it is watertight, else those of its convex hull. The mass is 0 if all triangles are
-        coplanar.
+        If the mesh is not watertight, its convex hull is used. The mass is 0 if all triangles are coplanar.
         """
         vertices, faces = self._merged
         if self.is_watertight:
@@ -86,7 +82,7 @@ class TriangleMesh:
     def scaled(self, scale: Vector3) -> TriangleMesh:
         """Return the mesh scaled along its axes, as by the ``scale`` of a URDF mesh.
 
-        A negative factor mirrors it.
+        A negative factor mirrors the mesh.
         """
         if scale == (1.0, 1.0, 1.0):
             return self
@@ -108,8 +104,8 @@ def read_mesh(path: Path) -> TriangleMesh:
     glTF file.
 
     Raises:
-        LinkwrightError: INR101, there is no such file; INR102, its extension is not known; INR103, it cannot be read;
-            INR104, trimesh is not installed.
+        LinkwrightError: INR101, the file does not exist; INR102, the extension is unknown; INR103, the file cannot be
+            read; INR104, trimesh is not installed.
     """
     kind = path.suffix.lower()
     if kind not in MESH_ENDINGS:
@@ -159,12 +155,12 @@ def _parse(data: bytes, kind: str, path: Path) -> TriangleMesh:
         count += len(corners)
         parsed.append(placed.mesh)
     for mesh in parsed:
-        mesh.__dict__.clear()  # breaks reference cycles, which hold much memory
+        mesh.__dict__.clear()  # This breaks reference cycles, which would keep much memory alive.
     return TriangleMesh(np.concatenate(vertices), np.concatenate(faces))
 
 
 def unreadable(path: Path, why: str) -> LinkwrightError:
-    """Return the error for a mesh that cannot be used (INR103)."""
+    """Return the error INR103 for a mesh file that cannot be used."""
     hint = phrase("export it again, or leave the link out")
     return LinkwrightError(
         Diagnostic(

@@ -1,7 +1,8 @@
-"""The outlines of mesh files, for checks of descriptions.
+"""The properties of mesh files that checks of descriptions need.
 
-Outlines of small files need no numpy. Importing numpy takes longer than the rest of the check of a robot with a small
-mesh. Large or unusual files are left to `linkwright.geometry.meshes`, which computes the same results with arrays.
+Small files are read without numpy, because importing numpy takes longer than the rest of the check of a robot with a
+small mesh. Large or unusual files are read by `linkwright.geometry.meshes`, which computes the same results with
+arrays.
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ _Triangle = tuple[int, int, int]
 
 
 class Outline(Protocol):
-    """The interface of the mesh properties that checks use."""
+    """The interface of meshes with the properties that checks use."""
 
     @property
     def bounds(self) -> Bounds:
@@ -60,7 +61,7 @@ class SmallMesh:
 
     Args:
         corners: the corners in m.
-        faces: three indices of corners for each triangle.
+        faces: the three indices of corners of each triangle.
     """
 
     def __init__(self, corners: list[Vector3], faces: list[_Triangle]) -> None:
@@ -80,7 +81,7 @@ class SmallMesh:
 
     @cached_property
     def is_watertight(self) -> bool:
-        """Whether each edge occurs equally often in both directions.
+        """Whether the triangles bound a volume: each edge occurs equally often in both directions.
 
         Corners at the same position are merged first.
         """
@@ -114,7 +115,7 @@ class SmallMesh:
 
 
 def read_small(data: bytes, kind: str) -> SmallMesh | None:
-    """Return the triangles of a usual STL, OBJ or COLLADA file, or None for any other.
+    """Return the triangles of a simple STL, OBJ or COLLADA file, or None for other files.
 
     Args:
         data: the content of the file.
@@ -124,7 +125,7 @@ def read_small(data: bytes, kind: str) -> SmallMesh | None:
         if kind == "stl":
             return _binary_stl(data) or _text_stl(data)
         return _obj(data) if kind == "obj" else _collada(data) if kind == "dae" else None
-    except ValueError:  # a malformed number, or a name that is not UTF-8
+    except ValueError:  # A malformed number, or a name that is not UTF-8.
         return None
 
 
@@ -150,7 +151,7 @@ def _text_stl(data: bytes) -> SmallMesh | None:
 
 
 def _of_corners(numbers: list[float]) -> SmallMesh | None:
-    """Return the mesh of triangles that share no corners."""
+    """Return a mesh of triangles that share no corners, from the coordinates of the corners."""
     count = len(numbers) // 9
     places = range(3 * count)
     return _mesh(_points(numbers), list(zip(places[::3], places[1::3], places[2::3], strict=True)))
@@ -158,7 +159,7 @@ def _of_corners(numbers: list[float]) -> SmallMesh | None:
 
 def _obj(data: bytes) -> SmallMesh | None:
     if b"\\" in data:
-        return None  # a backslash may continue a line on the next one
+        return None  # A backslash may continue a line on the next one.
     lines = data.splitlines()
     rows = [line[2:].split() for line in lines if line.startswith(b"v ")]
     polygons = [line[2:].split() for line in lines if line.startswith(b"f ")]
@@ -176,7 +177,7 @@ def _obj(data: bytes) -> SmallMesh | None:
 
 
 def _collada(data: bytes) -> SmallMesh | None:
-    from linkwright.geometry.collada_lists import read_triangles  # imported here, because it imports an XML parser
+    from linkwright.geometry.collada_lists import read_triangles  # Imports an XML parser.
 
     found = read_triangles(data.strip(COLLADA_PADDING), _MOST_TRIANGLES)
     return None if found is None else _mesh(*found)

@@ -1,4 +1,4 @@
-"""Triangles without colours, and the parsing of the numbers in text files."""
+"""Meshes without colours, and the parsing of numbers in text files."""
 
 from __future__ import annotations
 
@@ -14,13 +14,11 @@ from linkwright.loading.lean_typing import Any
 
 
 class PlainMesh:
-    """The triangles of a file.
-
-    The class has the part of the interface of `trimesh.Trimesh` that is used here.
+    """The triangles of a file, with a part of the interface of `trimesh.Trimesh`.
 
     Attributes:
-        vertices: corners, shape (n, 3), in the file's unit.
-        faces: three indices of corners for each triangle, shape (m, 3).
+        vertices: the corners, shape (n, 3), in the file's unit.
+        faces: the three indices of corners of each triangle, shape (m, 3).
         name: the name in the file.
         visual: an object whose ``kind`` is None, because there are no colours.
     """
@@ -33,13 +31,15 @@ class PlainMesh:
 
 
 def parse_numbers(text: str | None, kind: type[Any]) -> Any:
-    """Parse numbers separated by blanks, and return them as an array of a type.
+    """Parse numbers separated by whitespace, and return them as an array.
+
+    `kind` is the type of the array's elements.
 
     Raises:
         Unusual: the text contains anything else, or a number that is not finite.
     """
     with warnings.catch_warnings():
-        warnings.simplefilter("error", DeprecationWarning)  # numpy warns about words that are not numbers
+        warnings.simplefilter("error", DeprecationWarning)  # numpy warns about tokens that are not numbers.
         try:
             found = np.fromstring((text or "").strip(), dtype=kind, sep=" ")
         except (DeprecationWarning, ValueError):
@@ -50,9 +50,9 @@ def parse_numbers(text: str | None, kind: type[Any]) -> Any:
 
 
 def fans(corners: Faces, counts: Faces) -> Faces:
-    """Split polygons into triangles.
+    """Split polygons into triangles of shape (n, 3).
 
-    Each triangle joins the first corner and two neighbouring other corners.
+    Each triangle joins the first corner of its polygon and two neighbouring other corners.
 
     Args:
         corners: the corners of all polygons, one polygon after another.

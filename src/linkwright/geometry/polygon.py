@@ -1,4 +1,4 @@
-"""Polygons in a plane: triangulation, and the test whether points are inside."""
+"""Triangulation of polygons in a plane, and the test whether points are inside a polygon."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Point = tuple[float, float]
 
 
 def triangulated(points: Sequence[Point]) -> list[tuple[int, int, int]]:
-    """Return the triangles of a simple polygon, by ear clipping.
+    """Triangulate a simple polygon by ear clipping.
 
     Source: Meisters, *Polygons have ears*, 1975.
 
@@ -22,7 +22,8 @@ def triangulated(points: Sequence[Point]) -> list[tuple[int, int, int]]:
         points: the corners in either direction; the last is joined to the first, which may be repeated at the end.
 
     Returns:
-        Indices of corners, counterclockwise. For a polygon that crosses itself, the triangles that could be cut off.
+        The indices of each triangle's corners, counterclockwise. For a polygon that crosses itself, only the triangles
+        that could be cut off.
     """
     ring = [index for index, point in enumerate(points) if point != points[index - 1]]
     if _twice_area(points, ring) < 0:
@@ -45,7 +46,7 @@ def triangulated(points: Sequence[Point]) -> list[tuple[int, int, int]]:
 
 
 def within_polygon(points: NDArray[np.float64], corners: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Return which points are inside a polygon.
+    """Return a mask of the points that are inside a polygon.
 
     The even-odd rule counts the edges that a ray from the point crosses.
 
@@ -56,7 +57,7 @@ def within_polygon(points: NDArray[np.float64], corners: NDArray[np.float64]) ->
     Returns:
         Shape (...).
     """
-    import numpy as np  # imported here, because readers of descriptions triangulate polygons without numpy
+    import numpy as np  # Readers of descriptions triangulate polygons without numpy.
 
     x, y = points[..., 0], points[..., 1]
     inside = np.zeros(x.shape, np.bool_)

@@ -1,4 +1,4 @@
-"""Mass properties inside a closed surface of triangles, and the test whether it is closed."""
+"""Mass properties of the solid inside a closed surface of triangles, and the test whether a surface is closed."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def polyhedron_properties(vertices: Array, faces: Faces) -> MassProperties:
     """
     if not len(faces):
         return MassProperties(0.0)
-    shift = (vertices.min(axis=0) + vertices.max(axis=0)) / 2.0  # near the solid, to reduce cancellation
+    shift = (vertices.min(axis=0) + vertices.max(axis=0)) / 2.0  # An origin near the solid reduces cancellation.
     corners = (vertices - shift)[faces]
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
     det = np.einsum("ij,ij->i", a, np.cross(b, c))
@@ -50,7 +50,7 @@ def polyhedron_properties(vertices: Array, faces: Faces) -> MassProperties:
 
 
 def merged(vertices: Array, faces: Faces) -> tuple[Array, Faces]:
-    """Merge corners at the same position, and remove the triangles that lose their area.
+    """Merge corners at the same position, and remove triangles that then have no area.
 
     STL has no shared corners at all, and other formats split corners where normals or textures differ.
     """
@@ -71,9 +71,9 @@ def merged(vertices: Array, faces: Faces) -> tuple[Array, Faces]:
 def is_closed(faces: Faces) -> bool:
     """Return whether triangles with shared corners bound a volume.
 
-    They do if every edge occurs equally often in both directions. This is exactly the condition of the divergence
-    theorem. It holds for several bodies in one mesh, and where more than two triangles meet at an edge. It does not
-    hold if there is a hole, or if neighbours have opposite orientations.
+    The condition is that every edge occurs equally often in both directions. This is exactly the condition of the
+    divergence theorem. It holds for several bodies in one mesh, and where more than two triangles meet at an edge. It
+    does not hold if there is a hole, or if neighbours have opposite orientations.
     """
     if not len(faces):
         return False

@@ -1,4 +1,4 @@
-"""The simple shapes in descriptions, and frames as rotation matrix and position.
+"""The primitive shapes in descriptions, and frames as rotation matrix and position.
 
 Rotations are matrices as three rows, from the child frame to the parent frame; lengths are metres. All numbers are
 plain floats: for few frames, this is faster than arrays, and it needs no numpy.
@@ -41,7 +41,7 @@ class Capsule:
 
 @dataclass(frozen=True, slots=True)
 class Sphere:
-    """A sphere, centred at the origin; lengths in metres."""
+    """A sphere centred at the origin, with its radius in metres."""
 
     radius: float
 
@@ -54,7 +54,7 @@ def volume_of(shape: SimpleShape) -> float:
     if isinstance(shape, Box):
         return prod(shape.size) if min(shape.size) > 0 else 0.0
     r = max(shape.radius, 0.0)
-    ball = 4 / 3 * pi * (r * r * r)  # r ** 3 would raise OverflowError for a large number
+    ball = 4 / 3 * pi * (r * r * r)  # r ** 3 would raise OverflowError for a large number.
     if isinstance(shape, Sphere):
         return ball
     if isinstance(shape, Capsule):
@@ -79,11 +79,11 @@ class Placement(NamedTuple):
         return x + self.position[0], y + self.position[1], z + self.position[2]
 
     def inside(self, outer: Placement) -> Placement:
-        """Return this frame, given in the inner frame of `outer`, in the outer frame of `outer`."""
+        """Return this frame in the outer frame of `outer`; this placement is in its inner frame."""
         return Placement(product(outer.rotation, self.rotation), outer.point(self.position))
 
     def seen_from(self, other: Placement) -> Placement:
-        """Return this frame in another frame, where both are given in the same frame."""
+        """Return this frame in another frame; both placements have the same outer frame."""
         back = transposed(other.rotation)
         difference = subtracted(self.position, other.position)
         return Placement(product(back, self.rotation), rotated(back, difference))
@@ -100,14 +100,14 @@ def rotation(pose: Pose) -> Matrix:
 
 
 def product(first: Matrix, second: Matrix) -> Matrix:
-    """Return the matrix product, which is the second rotation followed by the first."""
+    """Return the product of two matrices: the rotation that applies `second`, then `first`."""
     columns = transposed(second)
     rows = [tuple(dot(row, column) for column in columns) for row in first]
     return (_vector(rows[0]), _vector(rows[1]), _vector(rows[2]))
 
 
 def transposed(matrix: Matrix) -> Matrix:
-    """Return the transpose of a matrix, which is the inverse of a rotation."""
+    """Return the transpose of a matrix, which is the inverse of a rotation matrix."""
     return (
         (matrix[0][0], matrix[1][0], matrix[2][0]),
         (matrix[0][1], matrix[1][1], matrix[2][1]),
@@ -121,7 +121,7 @@ def rotated(matrix: Matrix, vector: Vector3) -> Vector3:
 
 
 def angle_between(first: Matrix, second: Matrix) -> float:
-    """Return the angle in radians by which two rotations differ."""
+    """Return the angle in radians of the rotation between two orientations."""
     trace = sum(dot(row, other) for row, other in zip(first, second, strict=True))
     return acos(max(-1.0, min(1.0, (trace - 1.0) / 2.0)))
 
@@ -172,7 +172,7 @@ class Bounds(NamedTuple):
     def moved(self, frame: Placement) -> Bounds:
         """Return the bounding box of this box in a parent frame.
 
-        `frame` is the placement of this box's frame in it.
+        `frame` is the placement of this box's frame in the parent frame.
         """
         low, high = [], []
         for row, start in zip(frame.rotation, frame.position, strict=True):

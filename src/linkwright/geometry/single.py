@@ -57,12 +57,13 @@ _GIMBAL_LOCK = 0.99999
 
 @dataclass(frozen=True, slots=True)
 class Pose:
-    """The pose of a child frame in its parent frame, as descriptions write it.
+    """The pose of a child frame in its parent frame, as written in descriptions.
 
     Attributes:
-        xyz: translation in metres.
+        xyz: the translation in metres.
         rpy: roll, pitch, yaw in radians about the fixed axes x, y, z: R = Rz(yaw) Ry(pitch) Rx(roll) (REP 103).
-        quaternion: set only if the file has ``quat_xyzw`` (URDF 1.1), in which case `rpy` is derived from it.
+        quaternion: the quaternion if the file has ``quat_xyzw`` (URDF 1.1), from which `rpy` is then derived; else
+            None.
     """
 
     xyz: Vector3 = (0.0, 0.0, 0.0)
@@ -74,14 +75,14 @@ IDENTITY_POSE = Pose()
 
 
 def quaternion_of(pose: Pose) -> Quaternion:
-    """Return the rotation of a pose, from the child's axes to the parent's axes."""
+    """Return the rotation of a pose, from the child's axes to the parent's, as a quaternion."""
     return pose.quaternion or quaternion_from_rpy(pose.rpy)
 
 
 def quaternion_from_rpy(rpy: Vector3) -> Quaternion:
-    """Return the rotation Rz(yaw) Ry(pitch) Rx(roll).
+    """Return the rotation Rz(yaw) Ry(pitch) Rx(roll) as a quaternion.
 
-    The result is identical to urdfdom's to the last bit.
+    The result is bitwise identical to urdfdom's.
     """
     roll, pitch, yaw = (angle / 2.0 for angle in rpy)
     sin_roll, cos_roll = sin(roll), cos(roll)
@@ -96,7 +97,7 @@ def quaternion_from_rpy(rpy: Vector3) -> Quaternion:
 
 
 def rpy_from_quaternion(quaternion: Quaternion) -> Vector3:
-    """Return roll, pitch and yaw as urdfdom computes them.
+    """Return roll, pitch and yaw in radians, as urdfdom computes them.
 
     Roll is 0 within 0.26 degrees of a pitch of +-90 degrees.
     """
@@ -130,7 +131,7 @@ def axis_and_angle(quaternion: Quaternion) -> tuple[Vector3, float]:
     The axis of the identity is x.
     """
     x, y, z, w = quaternion
-    norm = sqrt(x * x + y * y + z * z)  # 1 - w² would have few significant digits for a small angle
+    norm = sqrt(x * x + y * y + z * z)  # 1 - w² would have few significant digits for a small angle.
     angle = 2.0 * atan2(norm, w)
     if norm < 1e-6:
         return (1.0, 0.0, 0.0), angle
@@ -138,9 +139,9 @@ def axis_and_angle(quaternion: Quaternion) -> tuple[Vector3, float]:
 
 
 def rotation_from_z(axis: Vector3) -> Quaternion:
-    """Return the shortest rotation that turns z to an axis of any length.
+    """Return the smallest rotation from z to an axis of any length, as a quaternion.
 
-    For the direction opposite to z, it is a rotation about x.
+    To the direction opposite to z, the rotation is about x. For a zero axis, it is the identity.
     """
     x, y, z = axis
     norm = sqrt(x * x + y * y + z * z)
@@ -157,7 +158,7 @@ def rotate(quaternion: Quaternion, vector: Vector3) -> Vector3:
     """Rotate a vector from the child frame into the parent frame."""
     qx, qy, qz, qw = quaternion
     x, y, z = vector
-    # v + 2 w (u x v) + 2 u x (u x v), where u is the vector part
+    # v + 2 w (u x v) + 2 u x (u x v), where u is the vector part of the quaternion.
     tx, ty, tz = 2.0 * (qy * z - qz * y), 2.0 * (qz * x - qx * z), 2.0 * (qx * y - qy * x)
     return (
         x + qw * tx + qy * tz - qz * ty,
@@ -195,22 +196,22 @@ def quaternion_inverse(quaternion: Quaternion) -> Quaternion:
 
 
 def compose(b_in_a: Transform, c_in_b: Transform) -> Transform:
-    """Return the pose of frame C in frame A."""
+    """Return the pose of frame C in frame A, given B in A and C in B."""
     x, y, z = rotate(b_in_a[3:], c_in_b[:3])
     return (b_in_a[0] + x, b_in_a[1] + y, b_in_a[2] + z, *quaternion_multiply(b_in_a[3:], c_in_b[3:]))
 
 
 def invert(b_in_a: Transform) -> Transform:
-    """Return the pose of frame A in frame B."""
+    """Return the pose of frame A in frame B, given B in A."""
     x, y, z, qx, qy, qz, qw = b_in_a
-    inverse = (-qx, -qy, -qz, qw)  # inlined, because lookups of transforms must be fast
+    inverse = (-qx, -qy, -qz, qw)  # Inlined, because lookups of transforms must be fast.
     return (*rotate(inverse, (-x, -y, -z)), *inverse)
 
 
 def interpolate(first: Transform, second: Transform, ratio: float) -> Transform:
-    """Interpolate between two poses, as in tf2.
+    """Interpolate between two poses, as tf2 does.
 
-    Positions are on a line, rotations on the shorter arc.
+    Positions are interpolated linearly, and rotations along the shorter arc; `ratio` is 0 at `first` and 1 at `second`.
     """
     rest = 1.0 - ratio
     x, y, z = (rest * a + ratio * b for a, b in zip(first[:3], second[:3], strict=True))

@@ -1,4 +1,4 @@
-"""Mass properties of the simple shapes, in closed form.
+"""Mass properties of the primitive shapes, in closed form.
 
 The formulae are those in any table of moments of inertia of homogeneous bodies, for instance Beer, Johnston: *Vector
 Mechanics for Engineers: Dynamics*, inside back cover. All refer to the centre of mass and the shape's own axes.
@@ -15,7 +15,7 @@ from linkwright.geometry.shapes import Box, Capsule, Cylinder, SimpleShape, Sphe
 
 
 def shape_properties(shape: SimpleShape, density: float = 1.0) -> MassProperties:
-    """Return the mass properties of a solid shape of uniform density, in its own frame.
+    """Return the mass properties of a shape filled with uniform density, in the shape's frame.
 
     Args:
         shape: the shape, with lengths in m; a size of zero or less results in a body without mass.
@@ -31,7 +31,10 @@ def shape_properties(shape: SimpleShape, density: float = 1.0) -> MassProperties
 
 
 def _box(box: Box, density: float) -> MassProperties:
-    """Return ``m = rho a b c``; ``Ixx = m (b2 + c2) / 12`` and so on."""
+    """Return the mass properties of a box.
+
+    These are ``m = rho a b c``; ``Ixx = m (b2 + c2) / 12`` and so on.
+    """
     if min(box.size) <= 0:
         return MassProperties(0.0)
     a, b, c = box.size
@@ -40,7 +43,10 @@ def _box(box: Box, density: float) -> MassProperties:
 
 
 def _cylinder(cylinder: Cylinder, density: float) -> MassProperties:
-    """Return ``m = rho pi r2 l``; ``Ixx = Iyy = m (3 r2 + l2) / 12``; ``Izz = m r2 / 2``."""
+    """Return the mass properties of a cylinder along z.
+
+    These are ``m = rho pi r2 l``; ``Ixx = Iyy = m (3 r2 + l2) / 12``; ``Izz = m r2 / 2``.
+    """
     r, length = cylinder.radius, cylinder.length
     if min(r, length) <= 0:
         return MassProperties(0.0)
@@ -50,7 +56,10 @@ def _cylinder(cylinder: Cylinder, density: float) -> MassProperties:
 
 
 def _sphere(sphere: Sphere, density: float) -> MassProperties:
-    """Return ``m = rho 4/3 pi r3``; ``I = 2/5 m r2`` about every axis."""
+    """Return the mass properties of a sphere.
+
+    These are ``m = rho 4/3 pi r3``; ``I = 2/5 m r2`` about every axis.
+    """
     r = sphere.radius
     if r <= 0:
         return MassProperties(0.0)
@@ -60,7 +69,7 @@ def _sphere(sphere: Sphere, density: float) -> MassProperties:
 
 
 def _capsule(capsule: Capsule, density: float) -> MassProperties:
-    """Return the mass properties of a cylinder with a half sphere on each end.
+    """Return the mass properties of a capsule: a cylinder with a half sphere on each end.
 
     A half sphere has its centre of mass 3/8 r above its flat side and the moment ``83/320 m r2`` about this centre,
     across its axis. Moved to the centre of the capsule, that becomes ``2/5 r2 + l2/4 + 3/8 l r`` per unit of mass.

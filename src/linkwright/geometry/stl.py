@@ -1,6 +1,6 @@
-"""Reading of the usual STL files, without colours.
+"""A fast reader of STL files without unusual content.
 
-Importing trimesh takes longer than reading most of them.
+Importing trimesh takes longer than reading most files.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ _WORDS = [place for place, word in enumerate(FACET) if word != b"?"]
 def read_stl(data: bytes, *, is_plain: bool = False) -> PlainMesh | None:
     """Return the triangles of an STL file.
 
-    The result is None for a file with several solids or mistakes, which is left to trimesh.
+    Returns None for a file with several solids or with mistakes, which must be read by trimesh.
 
     Args:
         data: the content of the file.
-        is_plain: whether to ignore its colours; otherwise the result is None for a file with colours, too.
+        is_plain: whether to ignore colours; otherwise None is returned for a file with colours, too.
     """
     return _binary(data, is_plain=is_plain) or _text(data)
 
@@ -55,11 +55,11 @@ def _text(data: bytes) -> PlainMesh | None:
         return None
     try:
         return _mesh(facets[:, list(CORNERS)].astype(np.float64), name.strip().decode())
-    except ValueError:  # a malformed number, or a name that is not UTF-8
+    except ValueError:  # A malformed number, or a name that is not UTF-8.
         return None
 
 
 def _mesh(corners: Array, name: str) -> PlainMesh:
-    """Return the mesh of triangles that share no corners."""
+    """Return a mesh of triangles that share no corners."""
     vertices = corners.reshape(-1, 3)
     return PlainMesh(vertices, np.arange(len(vertices)).reshape(-1, 3), name)

@@ -1,4 +1,4 @@
-"""Checks whether an inertia tensor, a mass and a shape can belong to one body.
+"""Checks of whether an inertia tensor, a mass and a shape can belong to one body.
 
 A rigid body's tensor is symmetric and positive definite, and its principal moments obey the triangle inequality: none
 is larger than the sum of the other two, because ``I1 + I2 - I3 = 2 integral(z2 dm) >= 0``. Source: Traversaro,
@@ -41,16 +41,16 @@ _MOST_SWEEPS = 30
 
 
 def largest_entry(tensor: Array | Matrix) -> float:
-    """Return the largest absolute value in a tensor; 0 if an entry is not finite."""
+    """Return the largest absolute value of a tensor's entries, or 0 if an entry is not finite."""
     entries = [abs(float(entry)) for entry in chain.from_iterable(tensor)]
     return max(entries) if all(map(isfinite, entries)) else 0.0
 
 
 def relative_moments(tensor: Array | Matrix) -> Vector3:
-    """Return the principal moments relative to the tensor's largest entry, smallest first.
+    """Return the principal moments divided by the tensor's largest entry, smallest first.
 
-    No step overflows. They are computed by Jacobi rotations, each of which makes one product zero. For a single tensor,
-    this is faster than arrays, and it keeps checks of descriptions free of numpy.
+    The moments are computed by Jacobi rotations, each of which makes one product of inertia zero; no step overflows.
+    For a single tensor, this is faster than arrays, and it keeps checks of descriptions free of numpy.
     """
     largest = largest_entry(tensor)
     if not largest > 0:
@@ -83,12 +83,12 @@ def _rotate(rows: list[list[float]], p: int, q: int, other: int) -> None:
 
 
 def is_positive_definite(tensor: Array | Matrix) -> bool:
-    """Return whether all principal moments are positive; `tensor` is symmetric, of shape (3, 3)."""
+    """Return whether all principal moments of a symmetric tensor, of shape (3, 3), are positive."""
     return relative_moments(tensor)[0] > 0
 
 
 def is_indefinite(tensor: Array | Matrix, rounding: float = 0.0) -> bool:
-    """Return whether a principal moment is more negative than a rounded zero can be.
+    """Return whether a principal moment is negative by more than rounding can explain.
 
     Args:
         tensor: the inertia tensor in kg m2; shape (3, 3).
@@ -103,8 +103,8 @@ def is_indefinite(tensor: Array | Matrix, rounding: float = 0.0) -> bool:
 def triangle_excess(tensor: Array | Matrix) -> float:
     """Return by how much the largest principal moment exceeds the sum of the others.
 
-    The excess is a fraction of the largest moment. The result is 0 or less for a possible body, and 0 for a flat one.
-    The tensor's axes do not matter.
+    The excess is a fraction of the largest moment: negative or 0 for a possible body, and 0 for a flat one. It does not
+    depend on the axes of the tensor.
     """
     small, middle, large = relative_moments(tensor)
     return (large - small - middle) / large if large > 0 else 0.0
@@ -113,8 +113,8 @@ def triangle_excess(tensor: Array | Matrix) -> float:
 def excessive_products(tensor: Array | Matrix) -> list[tuple[str, float]]:
     """Return the products of inertia that are too large for the diagonal moments.
 
-    ``ab <= (a2 + b2) / 2`` under the integral results in ``|Ixy| <= Izz / 2`` and so on, and a positive definite tensor
-    has ``Ixy2 < Ixx Iyy``.
+    The limits are ``|Ixy| <= Izz / 2`` and so on, from ``ab <= (a2 + b2) / 2`` under the integral, and
+    ``Ixy2 < Ixx Iyy``, because the tensor is positive definite.
 
     Returns:
         Pairs of name (``ixy``, ``ixz``, ``iyz``) and limit in kg m2.
@@ -131,7 +131,7 @@ def excessive_products(tensor: Array | Matrix) -> list[tuple[str, float]]:
 
 
 def largest_moment_within(center: Vector3, box: Bounds, mass: float) -> float:
-    """Return an upper bound for the moment about its centre of mass of a body in a box.
+    """Return an upper bound of the moments about its centre of mass of a body in a box.
 
     The result is in kg m2. No point of the body is farther away than the farthest corner, and a moment about an axis
     through the centre of mass is at most the moment of the entire mass at that distance.
@@ -146,7 +146,7 @@ def largest_moment_within(center: Vector3, box: Bounds, mass: float) -> float:
 
 
 def problems(properties: MassProperties) -> list[Phrase]:
-    """Return why mass properties cannot belong to a body, in words; empty for valid ones."""
+    """Return the reasons why mass properties cannot belong to a body; empty if they can."""
     found = []
     if not properties.mass > 0:
         found.append(phrase("the mass is not positive"))

@@ -1,4 +1,4 @@
-"""A fast reader of the triangles of simple OBJ files.
+"""A fast reader of OBJ files without unusual content.
 
 Importing trimesh takes longer than reading most files.
 """
@@ -19,10 +19,10 @@ _OF_TEXTURES = lazy_pattern(rb"/\S*")
 def read_obj(data: bytes) -> PlainMesh | None:
     """Return the triangles of an OBJ file.
 
-    Returns None if it uses unusual features, so that trimesh must read it.
+    Returns None for a file with unusual features, which must be read by trimesh.
     """
     if b"\\" in data:
-        return None  # A line may continue on the next one.
+        return None  # A backslash continues a line on the next one.
     lines = data.splitlines()
     vertices = [line[2:] for line in lines if line.startswith(b"v ")]
     polygons = [line[2:] for line in lines if line.startswith(b"f ")]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 
 class RclError(RuntimeError):
-    """An error that the C library below rclpy would report (rclpy ``RCLError``)."""
+    """An error that the C library rcl below rclpy would report (rclpy ``RCLError``)."""
 
 
 class InvalidHandleError(RuntimeError):
@@ -15,7 +15,7 @@ class InvalidHandleError(RuntimeError):
 
 
 class InterruptedWaitError(Exception):
-    """Raised when a wait or sleep ends because the graph is closed (rclpy ``ROSInterruptException``)."""
+    """Raised when closing the graph ends a wait or sleep (rclpy ``ROSInterruptException``)."""
 
     def __init__(self, text: str = "rclpy.shutdown() has been called") -> None:
         super().__init__(text)
@@ -33,7 +33,7 @@ class NodeNotFoundError(RclError):
 class NotInitializedError(Exception):
     """Raised when a call needs a context that is not initialized or was shut down.
 
-    Name and text are those of rclpy.
+    Its class name and message at run time are those of rclpy.
     """
 
     def __init__(self, message: str | None = None) -> None:
@@ -54,4 +54,4 @@ class ExternalShutdownException(Exception):  # noqa: N818  # rclpy's name
 
 
 class ConditionReachedException(Exception):  # noqa: N818  # rclpy's name
-    """Raised when the condition that ends a wait has become true."""
+    """Raised when the condition that ends a wait is true."""

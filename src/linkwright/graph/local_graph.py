@@ -31,10 +31,10 @@ class LocalGraph(GraphQueries):
     Args:
         clock: stamps messages and wakes timers; the system's clock by default.
         on_log: receives log records; by default they are written to standard error in ROS 2's console format.
-        threads: whether the running event loop is not to run the callbacks.
+        threads: whether other threads run the callbacks, instead of the running event loop.
         levels: the levels of the graph's loggers; new ones by default.
-        on_namesakes: receives the names that our nodes share with nodes of other processes; by default a warning is
-            logged.
+        on_namesakes: receives the names that nodes of this process share with nodes of other processes; by default a
+            warning is logged.
 
     Attributes:
         makers: the nodes that created other nodes, such as those of controllers, by the logger names of the created
@@ -96,13 +96,13 @@ class LocalGraph(GraphQueries):
         copies_messages: bool = False,
         stays_inside: bool = False,
     ) -> NodeHandle:
-        """Add a node to the graph, with a warning if another node of this process has its name.
+        """Add a node to the graph; log a warning if another node of this process has the same name.
 
         Args:
             identity: the node's name.
             remappings: the node's rules for names of topics and services.
-            copies_messages: whether its messages are copied, so that their sender may change them afterwards.
-            stays_inside: whether it is hidden, with all its endpoints, from other processes.
+            copies_messages: whether messages are copied, so that the node may change a message after publishing it.
+            stays_inside: whether the node and its endpoints are hidden from other processes.
 
         Raises:
             InvalidHandleError: the graph is closed.
@@ -134,7 +134,7 @@ class LocalGraph(GraphQueries):
         return node
 
     def get_logger(self, name: str) -> Logger:
-        """Return a new logger with any name, for code outside a node."""
+        """Return a new logger with an arbitrary name, for code outside a node."""
         return Logger(name, self._sink, self.timebase.now_ns, self.levels, self.timebase.steady_ns)
 
     def nodes(self) -> tuple[NodeHandle, ...]:
@@ -167,17 +167,17 @@ class LocalGraph(GraphQueries):
         self._outside_changed()
 
     def detach(self) -> None:
-        """Close the transport, if there is one; the graph continues inside the process."""
+        """Close the transport, if there is one. Endpoints inside the process stay connected."""
         with self._lock:
             transport, self._transport = self._transport, None
         if transport is not None:
             transport.close()
             self.notify_change()
 
-    # --- for nodes ---------------------------------------------------------------------------------------------------
+    # --- called by nodes ---------------------------------------------------------------------------------------------
 
     def add(self, endpoint: Endpoint) -> None:
-        """Connect a new endpoint with those of the same name, in this process and outside."""
+        """Connect a new endpoint to the endpoints with the same name, in this process and outside."""
         with self._lock:
             self.bus.add(endpoint)
             if self._transport is not None and not endpoint.node.stays_inside:
@@ -185,7 +185,7 @@ class LocalGraph(GraphQueries):
         self.notify_change()
 
     def remove(self, endpoint: Endpoint) -> None:
-        """Remove an endpoint."""
+        """Remove an endpoint, in this process and outside."""
         with self._lock:
             self.bus.remove(endpoint)
             if self._transport is not None and not endpoint.node.stays_inside:
@@ -193,7 +193,7 @@ class LocalGraph(GraphQueries):
         self.notify_change()
 
     def watch_lost(self) -> None:
-        """Start to notify subscriptions of lost publishers (see `Subscription.watch_lost`)."""
+        """Start notifying subscriptions of lost publishers (see `Subscription.watch_lost`)."""
         with self._lock:
             if not self._watches_lost:
                 self._watches_lost = True
@@ -221,7 +221,7 @@ class LocalGraph(GraphQueries):
             await self._dispatcher.settle()
 
     async def close(self) -> None:
-        """Destroy every node and drop undelivered messages. Nothing of the graph runs after this."""
+        """Destroy every node and drop undelivered messages. After this no code of the graph runs."""
         transport = self._end()
         if transport is not None:
             left: Future[None] = Future()
@@ -233,7 +233,7 @@ class LocalGraph(GraphQueries):
             await self._dispatcher.join()
 
     def close_now(self) -> None:
-        """Destroy every node, from any thread other than that of an event loop; see `close`."""
+        """Destroy every node, from any thread except the thread of an event loop; see `close`."""
         transport = self._end()
         if transport is not None:
             transport.close()

@@ -16,7 +16,7 @@ class LoggerServices:
     """The services ``~/get_logger_levels`` and ``~/set_logger_levels`` (Jazzy and newer).
 
     Args:
-        node: the node.
+        node: the node that owns the services.
         levels: the logger levels of the node's graph.
     """
 
@@ -47,7 +47,7 @@ class LoggerServices:
         return response
 
     def _set_one(self, name: str, level: int) -> str:
-        """Set the level of one logger; return the reason if that fails, otherwise an empty string."""
+        """Set the level of one logger; return an empty string, or the reason for a failure."""
         try:
             self._levels.set(name, LogLevel(level))
         except ValueError:

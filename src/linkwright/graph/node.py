@@ -1,4 +1,4 @@
-"""Nodes, and the graph that creates them. Their methods have rclpy's names."""
+"""Nodes, and the graph that creates them, with rclpy's method names."""
 
 from __future__ import annotations
 
@@ -50,28 +50,28 @@ M = TypeVar("M")
 class Node(NodeParameters, NodeQueries):
     """A node of a graph.
 
-    Its dispatcher runs its callbacks. In a graph on an event loop this is the loop, which runs one callback after
-    another, logs the exception of a callback, and continues. All parts of a node may be created and used from any
-    thread.
+    The node's dispatcher runs its callbacks. In a graph on an event loop the dispatcher is this loop: it runs one
+    callback after another, and when a callback raises an exception, it logs the exception and continues. All parts
+    of a node may be created and used from any thread.
 
-    rclpy's nodes derive from this class, and users' nodes from those. Names here are therefore those of rclpy, or
-    mangled; everything else is provided by the `handle`. No code here reads `graph`, which a user's node may define
-    itself.
+    rclpy's nodes derive from this class, and users' nodes derive from rclpy's. Names here are therefore those of rclpy,
+    or mangled; everything else is provided by the `handle`. No code here reads `graph`, because a user's node may
+    define an attribute with that name.
 
     Args:
         graph: the graph that the node belongs to.
-        node_name: the node name that the code gives.
+        node_name: the node name in the source code, before remapping.
         namespace: the namespace; a missing leading slash is added.
         parameters: values that override declared defaults; nested mappings represent dotted names.
         remappings: rules ``(from, to)`` for topics, services, ``__node`` and ``__ns``; see `Remappings`.
         enclave: the security enclave.
-        start_parameter_services: whether other nodes can access its parameters.
-        enable_rosout: whether its log is also published on ``/rosout``.
-        rosout_qos_profile: the QoS of that topic; a number is a depth.
+        start_parameter_services: whether other nodes can access this node's parameters.
+        enable_rosout: whether the node's log is also published on ``/rosout``.
+        rosout_qos_profile: the QoS of ``/rosout``; a number is a depth.
         allow_undeclared_parameters: whether parameters can be set without being declared.
         automatically_declare_parameters_from_overrides: whether `parameters` are declared immediately.
-        copies_messages: whether its messages are copied, so that their sender may change them afterwards.
-        stays_inside: whether it is hidden, with all its endpoints, from other processes.
+        copies_messages: whether messages are copied, so that the node may change a message after publishing it.
+        stays_inside: whether the node and its endpoints are hidden from other processes.
 
     Raises:
         InvalidNodeNameError: the name is not valid.
@@ -137,16 +137,16 @@ class Node(NodeParameters, NodeQueries):
     def __describes_types(self, store: ParameterStore) -> bool:
         """Return whether the node offers the type description service.
 
-        The node's parameter decides; if it is not set, the distribution's default applies.
+        A parameter of the node decides. If the parameter is not set, the distribution's default applies.
         """
         if TYPE_DESCRIPTIONS not in store.overrides and not is_enabled_by_default():
             return False
         return self.__own(TYPE_DESCRIPTIONS, True, "Start the ~/get_type_description service for this node.")
 
     def __own(self, name: str, usual: bool, description: str) -> bool:
-        """Return the value of a boolean parameter that controls the node itself.
+        """Return the value of a read-only boolean parameter that configures the node itself.
 
-        The parameter is declared first if necessary.
+        If the parameter is not declared, it is declared with the default `usual`.
         """
         if not NodeParameters.has_parameter(self, name):
             NodeParameters.declare_parameter(
@@ -158,7 +158,7 @@ class Node(NodeParameters, NodeQueries):
     def graph(self) -> LocalGraph:
         """The graph that the node belongs to.
 
-        Unlike a property, this lets a user's node define an attribute of the same name.
+        This is a cached property, so that a user's node can define an attribute with the same name.
         """
         return self.__local_graph
 
@@ -169,14 +169,14 @@ class Node(NodeParameters, NodeQueries):
 
     @property
     def default_callback_group(self) -> CallbackGroup:
-        """The group of entities that are created without one, in which one callback runs at a time."""
+        """The mutually exclusive group of entities that are created without a group."""
         return self.__handle.default_callback_group
 
     @property
     def executor(self) -> Executor | None:
-        """The executor that runs the node's callbacks.
+        """The executor that runs the node's callbacks; None if there is none.
 
-        It is None if there is none, or if the graph's event loop runs the callbacks.
+        The value is None, too, if the graph's event loop runs the callbacks.
         """
         dispatcher = self.__handle.dispatcher
         return cast("Executor", dispatcher) if hasattr(dispatcher, "add_node") else None
@@ -211,7 +211,7 @@ class Node(NodeParameters, NodeQueries):
         return self.__handle.logger
 
     def get_clock(self) -> ROSClock:
-        """Return the node's clock, which follows ``/clock`` while the parameter ``use_sim_time`` is true."""
+        """Return the node's clock, which follows ``/clock`` while ``use_sim_time`` is true."""
         return self.__clock
 
     # --- creation ----------------------------------------------------------------------------------------------------
@@ -232,7 +232,7 @@ class Node(NodeParameters, NodeQueries):
         Args:
             msg_type: the message class, or the name of the type, whose class is then created on first use.
             topic: relative, absolute or private (``~/``) name.
-            qos_profile: the QoS that it offers; a number is a depth.
+            qos_profile: the offered QoS; a number is a depth.
             callback_group: the group of the event callbacks.
             event_callbacks: callbacks for QoS events.
             qos_overriding_options: the policies that parameters may override.
@@ -271,9 +271,9 @@ class Node(NodeParameters, NodeQueries):
         Args:
             msg_type: the message class, or the name of the type, whose class is then created on first use.
             topic: relative, absolute or private (``~/``) name.
-            callback: called with each message, which it must not change, and with a `MessageInfo` if it takes two
-                arguments. It may be a coroutine function.
-            qos_profile: the QoS that it requests; a number is a depth.
+            callback: a function or coroutine function that is called with each message, and with a `MessageInfo` if it
+                takes two arguments. It must not change the message.
+            qos_profile: the requested QoS; a number is a depth.
             callback_group: decides which entities may run at the same time.
             event_callbacks: callbacks for QoS events.
             qos_overriding_options: the policies that parameters may override.
@@ -312,9 +312,9 @@ class Node(NodeParameters, NodeQueries):
         Args:
             srv_type: the service class, or the name of the type.
             srv_name: relative, absolute or private (``~/``) name.
-            callback: called with a request and an empty response, which it fills in and returns. It may be a coroutine
-                function.
-            qos_profile: the QoS, which includes how many requests may be queued.
+            callback: a function or coroutine function that is called with a request and an empty response, fills in the
+                response and returns it.
+            qos_profile: the QoS; its depth limits how many requests are queued.
             callback_group: decides which entities may run at the same time.
             replying: whether the callback receives, instead of the response, a function that sends one at any time.
 
@@ -342,7 +342,7 @@ class Node(NodeParameters, NodeQueries):
         Args:
             srv_type: the service class, or the name of the type.
             srv_name: relative, absolute or private (``~/``) name.
-            qos_profile: the QoS, which includes how many requests may wait for a server.
+            qos_profile: the QoS; its depth limits how many requests are queued while no server is available.
             callback_group: decides which entities may run at the same time.
 
         Raises:
@@ -363,7 +363,7 @@ class Node(NodeParameters, NodeQueries):
         clock: Clock | None = None,
         autostart: bool = True,
     ) -> Timer:
-        """Create a timer that calls back at a fixed period, for the first time one period from now.
+        """Create a timer that calls back at a fixed period, for the first time after one period.
 
         Args:
             timer_period_sec: the period in seconds.
@@ -396,9 +396,9 @@ class Node(NodeParameters, NodeQueries):
     def create_guard_condition(
         self, callback: Callable[[], object] | None, callback_group: CallbackGroup | None = None
     ) -> GuardCondition:
-        """Create a guard condition that the node can trigger.
+        """Create a guard condition, whose callback is called soon after a trigger.
 
-        Several triggers in a row call the callback once.
+        Several triggers before the call result in a single call.
         """
         return self.__handle.add(GuardCondition(self.__handle, callback, callback_group))
 
@@ -441,42 +441,42 @@ class Node(NodeParameters, NodeQueries):
     # --- destruction -------------------------------------------------------------------------------------------------
 
     def destroy_publisher(self, publisher: Publisher[Any]) -> bool:
-        """Destroy a publisher, whose messages are still delivered.
+        """Destroy a publisher. Messages that it has published are still delivered.
 
-        Returns whether it belonged to this node.
+        Returns whether the publisher belonged to this node.
         """
         return self.__handle.remove(publisher)
 
     def destroy_subscription(self, subscription: Subscription[Any]) -> bool:
-        """Destroy a subscription, whose callback is not called again.
+        """Destroy a subscription. Its callback is not called again.
 
-        Returns whether it belonged to this node.
+        Returns whether the subscription belonged to this node.
         """
         return self.__handle.remove(subscription)
 
     def destroy_service(self, service: Service[Any, Any]) -> bool:
-        """Destroy a service; return whether it belonged to this node."""
+        """Destroy a service; return whether the service belonged to this node."""
         return self.__handle.remove(service)
 
     def destroy_client(self, client: Client[Any, Any]) -> bool:
-        """Destroy a client, whose pending futures stay pending.
+        """Destroy a client. Its pending futures stay pending.
 
-        Returns whether it belonged to this node.
+        Returns whether the client belonged to this node.
         """
         return self.__handle.remove(client)
 
     def destroy_timer(self, timer: Timer) -> bool:
-        """Destroy a timer; return whether it belonged to this node."""
+        """Destroy a timer; return whether the timer belonged to this node."""
         return self.__handle.remove(timer)
 
     def destroy_guard_condition(self, guard: GuardCondition) -> bool:
-        """Destroy a guard condition; return whether it belonged to this node."""
+        """Destroy a guard condition; return whether the guard condition belonged to this node."""
         return self.__handle.remove(guard)
 
     def destroy_rate(self, rate: Rate) -> bool:
         """Destroy a rate, and wake the threads that sleep on it.
 
-        Returns whether it belonged to this node.
+        Returns whether the rate belonged to this node.
         """
         return rate.destroy()
 
@@ -509,9 +509,9 @@ P = ParamSpec("P")
 
 
 def _made_by(node_class: Callable[Concatenate[LocalGraph, P], Node]) -> Callable[Concatenate[Graph, P], Node]:
-    """Return a method that creates a node of the given class in a graph.
+    """Return a method of `Graph` that creates a node of the given class.
 
-    The method takes the further arguments of that class.
+    The method takes the arguments of that class after the graph.
     """
 
     @wraps(node_class, assigned=("__doc__",), updated=())
@@ -524,9 +524,9 @@ def _made_by(node_class: Callable[Concatenate[LocalGraph, P], Node]) -> Callable
 class Graph(LocalGraph):
     """A ROS-like computation graph.
 
-    A graph that is created inside a running event loop lets that loop run the callbacks of its nodes. Created
-    elsewhere, or with `threads`, its nodes have no dispatcher at first; the executors of `linkwright.graph.executors`
-    can serve as one. The arguments are those of `LocalGraph`.
+    If a graph is created inside a running event loop, the loop runs the callbacks of its nodes. If it is created
+    elsewhere, or with `threads`, its nodes have no dispatcher at first; an executor of `linkwright.graph.executors`
+    can be their dispatcher. The arguments are those of `LocalGraph`.
     """
 
     create_node = _made_by(Node)

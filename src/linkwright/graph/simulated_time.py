@@ -1,4 +1,4 @@
-"""Simulated time: a node whose parameter ``use_sim_time`` is true follows the topic ``/clock``."""
+"""Simulated time: the time on ``/clock``, for nodes whose ``use_sim_time`` is true."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ class SimulatedTime:
     """Sets a node's clock from ``/clock`` while ``use_sim_time`` is true (rclpy ``TimeSource``).
 
     The clock is set in the thread in which a message of ``/clock`` arrives, not in a callback of the node, so time
-    passes while the node's own thread sleeps.
+    advances while the node's own thread sleeps.
 
     Args:
-        handle: the handle of the node, which subscribes.
+        handle: the handle of the node, which subscribes to ``/clock``.
         parameters: the parameters of the node.
         clock: the clock of the node.
     """
@@ -77,7 +77,7 @@ class _ClockSubscription(Subscription[Any]):
         self._ros_clock = clock
 
     def enqueue(self, message: Any, info: Any = None) -> None:
-        """Set the clock."""
+        """Set the clock to the time in the message, instead of queuing the message for a callback."""
         if type(message) is self._as_it_is:
             self._move(message)
             return

@@ -1,4 +1,4 @@
-"""The form for a description that fails because arguments have no value."""
+"""The form for a description that cannot be expanded because arguments have no value."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ _MOST_TRIED = 12
 
 
 def argument_form(call: XacroCall, finder: PackageFinder, findings: Iterable[Diagnostic]) -> ArgumentForm | None:
-    """Return the arguments that a description needs, with the callers' sets of values that result in a robot.
+    """Return the arguments that a description needs, and argument sets of callers that give a robot.
 
-    It takes as long as expanding the description with each set, and may run in another thread.
+    This takes as long as expanding the description with each argument set, and may run in another thread.
 
     Args:
         call: the use of xacro that failed.
@@ -27,7 +27,7 @@ def argument_form(call: XacroCall, finder: PackageFinder, findings: Iterable[Dia
         findings: the errors of that use.
 
     Returns:
-        The form, or None if other values would change nothing, as far as is known.
+        The form, or None if no other values are known to change the result.
     """
     from linkwright.descriptions.argument_sets import argument_sets
     from linkwright.lint.argument_sets import undeclared_argument
@@ -59,6 +59,6 @@ def _expands(call: XacroCall, values: Mapping[str, str], finder: PackageFinder) 
 
 
 def _label(values: Mapping[str, str], sets: Sequence[Mapping[str, str]]) -> str:
-    """Return the values in which the sets differ, as a label."""
+    """Return a label for an argument set: its values for the arguments in which the sets differ."""
     apart = [name for name in values if any(other.get(name) != values[name] for other in sets)]
     return " ".join(f"{name}:={values[name]}" for name in apart or values)

@@ -1,4 +1,4 @@
-"""The view of two descriptions in one scene: the new one as in `view`, the old one transparent."""
+"""The view of two descriptions in one scene: the new one as in `view`, the old one translucent."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ if TYPE_CHECKING:
 
 
 def run_compared_view(pair: Pair, options: HostOptions, *, foxglove: int | None = None) -> int:
-    """Show two descriptions in one scene, with their differences, until the user ends it.
+    """Show two descriptions in one scene, with their differences, until the user ends the view.
 
     Args:
-        pair: the two descriptions; the caller closes the pair.
+        pair: the two descriptions, which the caller closes.
         options: the options of nodes and viewers.
         foxglove: a port for Foxglove and Lichtblick to connect to; None for none.
 
@@ -38,7 +38,7 @@ def run_compared_view(pair: Pair, options: HostOptions, *, foxglove: int | None 
     options = replace(options, title=f"{pair.old.title} → {pair.new.title}")
     log = LaunchLog()
     if pair.old.revision is not None:
-        pair.old.read()  # A version in a commit cannot be corrected, so an error ends the command.
+        pair.old.read()  # A version in a commit cannot be corrected while the view is shown.
 
     def run(signals: SignalWatch) -> bool:
         async def show() -> bool:
@@ -51,7 +51,7 @@ def run_compared_view(pair: Pair, options: HostOptions, *, foxglove: int | None 
 
 
 class ComparedView(ModelView):
-    """Two descriptions on the running event loop; changes of both files are followed.
+    """The view of two descriptions on the running event loop, which reloads both files on changes.
 
     Args:
         pair: the two descriptions.
@@ -70,7 +70,7 @@ class ComparedView(ModelView):
     def _publish(self) -> bool:
         if self._pair.old.path.is_file():
             return super()._publish()
-        self._read_old()  # reports any error
+        self._read_old()  # logs the error
         self.shut_down("there is no model")
         return False
 
@@ -103,10 +103,7 @@ class ComparedView(ModelView):
             self._old_reload.start()
 
     def _read_old(self) -> str | None:
-        """Return the text of the old description.
-
-        Reports an error and returns None if it has none now.
-        """
+        """Return the text of the old description, or report the errors and return None."""
         try:
             text = self._old.expand(self._old_call)
         except DescriptionError as error:
@@ -125,7 +122,7 @@ class ComparedView(ModelView):
 
 
 class _OldDescriptions(Descriptions):
-    """Descriptions with unique texts, because both files may have the same content."""
+    """Descriptions whose texts differ from those of the new file, even if both files are equal."""
 
     def __init__(self, finder: PackageFinder, library: DescriptionLibrary) -> None:
         super().__init__(finder)

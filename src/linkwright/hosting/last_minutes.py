@@ -1,6 +1,6 @@
 """The default size of the live history.
 
-It is in a separate module because commands' help needs it and must load quickly.
+The constant has its own module because the help of commands needs it and must be displayed quickly.
 """
 
 DEFAULT_HISTORY = 256_000_000

@@ -44,10 +44,10 @@ OUTPUT_MODES = tuple(_OUTPUT_MODES)
 
 
 def output_destinations(mode: str | Mapping[str, Iterable[str] | str]) -> dict[int, frozenset[str]]:
-    """Return the destinations of a process's stdout (1) and stderr (2), from the ``output`` of its action.
+    """Return the destinations of a process's stdout (1) and stderr (2), given its ``output`` mode.
 
     Raises:
-        KeyError: the mode, stream or destination that does not exist.
+        KeyError: there is no such mode, stream or destination.
     """
     if isinstance(mode, str):
         stdout, stderr = _OUTPUT_MODES[mode]
@@ -76,7 +76,7 @@ class LaunchLog:
     Args:
         stdout: the stream for the output of processes.
         stderr: the stream for all other lines.
-        debug: whether to log details.
+        debug: whether to log debug lines.
     """
 
     def __init__(self, stdout: IO[str] | None = None, stderr: IO[str] | None = None, *, debug: bool = False) -> None:
@@ -105,14 +105,14 @@ class LaunchLog:
         return self._folder
 
     def begin(self) -> None:
-        """Log the first lines: the folder of the files, and the log level."""
+        """Log the first lines: the folder of the log files, and the log level."""
         folder = self.folder
         if self._has_folder:
             self.info_line("launch", f"All log files can be found below {folder}")
         self.info_line("launch", f"Default logging verbosity is set to {'DEBUG' if self._debug else 'INFO'}")
 
     def debug_line(self, name: str, text: str) -> None:
-        """Log a detail for users who debug a launch file."""
+        """Log a detail for users who debug a launch file, if debug lines are enabled."""
         if self._debug:
             self._own_line("DEBUG", name, text)
 
@@ -129,7 +129,7 @@ class LaunchLog:
         self._own_line("ERROR", name, text)
 
     def announce(self, line: str) -> None:
-        """Print a line without delay for programs that read our stdout."""
+        """Print a line to stdout and flush it, for programs that read our output."""
         self._print(1, line)
 
     def diagnostics(self, diagnostics: Iterable[Diagnostic]) -> None:
@@ -161,7 +161,7 @@ class LaunchLog:
         self._file(process, stream, line, destinations)
 
     def close(self) -> None:
-        """Close the files."""
+        """Close the log files."""
         self._closed = True
         for file in self._files.values():
             if file is not None:
@@ -181,7 +181,7 @@ class LaunchLog:
             self._write(f"{process}.log", line)
 
     def _print(self, stream: int, line: str) -> None:
-        with suppress(OSError):  # The reader, such as head, has exited, or its disk is full; the launch continues.
+        with suppress(OSError):  # the reader (such as head) may have exited, or the disk be full
             print(line, file=self._streams[stream], flush=True)
 
     def _painted(self, line: str, colour: str | None) -> str:
@@ -191,14 +191,14 @@ class LaunchLog:
         if self._closed:
             return
         if name not in self._files:
-            folder = self.folder  # Writing this line may fail, too.
+            folder = self.folder  # This may log a line, which may fail too.
             if name not in self._files:
                 self._files[name] = self._open(folder / name)
         file = self._files[name]
         if file is not None:
             try:
                 print(line, file=file, flush=True)
-            except OSError as error:  # A full disk must not end a launch.
+            except OSError as error:  # A full disk must not end the launch.
                 self._files[name] = None
                 self._unwritable(self.folder / name, error)
 
@@ -232,7 +232,7 @@ def line_format(chosen: str | None, named: dict[str, str]) -> Line:
         named: formats by name.
 
     Returns:
-        The function, which uses the default format if the chosen one cannot be filled.
+        The function, which uses the default format if the chosen one has unknown fields.
     """
     template = named.get(chosen or "default", chosen or "")
 
@@ -269,13 +269,15 @@ def log_base(environment: Mapping[str, str] | None = None) -> Path:
 
 
 def new_log_folder(base: Path) -> Path:
-    """Create the folder of one launch, named by the date, the machine and the process; ``latest`` links to it.
+    """Create the folder of one launch, and return its path.
+
+    The name consists of the date, the machine and the process; ``latest`` links to the folder.
 
     Raises:
-        OSError: it cannot be created.
+        OSError: the folder cannot be created.
     """
     while True:
-        # Local time, as in ROS's folder names, so that a user finds the launch of this morning.
+        # Folder names contain the local time, as in ROS.
         seconds, nanoseconds = divmod(time.time_ns(), NANOSECONDS_PER_SECOND)
         stamp = f"{time.strftime('%Y-%m-%d-%H-%M-%S', time.localtime(seconds))}-{nanoseconds // 1000:06d}"
         folder = base / f"{stamp}-{socket.gethostname()}-{os.getpid()}"
@@ -289,7 +291,7 @@ def new_log_folder(base: Path) -> Path:
 
 def _link_latest(base: Path, folder: Path) -> None:
     waiting = base / f".{LATEST}-{os.getpid()}"
-    with suppress(OSError, NotImplementedError):  # The file system may not support links.
+    with suppress(OSError, NotImplementedError):  # Some file systems do not support links.
         waiting.unlink(missing_ok=True)
         waiting.symlink_to(folder.name)
         waiting.replace(base / LATEST)

@@ -28,7 +28,7 @@ class Network:
         session: the launch.
 
     Attributes:
-        domain_id: the ROS_DOMAIN_ID that was joined; None before, or if joining fails.
+        domain_id: the ROS_DOMAIN_ID of the network; None if it was not joined.
 
     Raises:
         LinkwrightError: DDS121, the network must be joined with security.
@@ -45,18 +45,21 @@ class Network:
         self.domain_id: int | None = None
 
     def offer(self, graph: Graph) -> None:
-        """Set the graph to join with."""
+        """Set the graph that is joined to the network."""
         self._graph = graph
 
     def join_soon(self, *, with_viewer: bool) -> None:
-        """Join after a delay, once; does nothing without a graph, or if joining is switched off."""
+        """Join the network after a delay, once.
+
+        Nothing happens if there is no graph, or if joining is switched off.
+        """
         if self._graph is None or self._handle is not None or not self._is_enabled():
             return
         loop = asyncio.get_running_loop()
         self._handle = loop.call_later(_DELAY_SECONDS if with_viewer else 0.0, self._join)
 
     def close(self) -> None:
-        """Cancel joining."""
+        """Cancel joining the network."""
         if self._handle is not None:
             self._handle.cancel()
         self._graph = None
@@ -86,12 +89,12 @@ _LISTED = 6
 
 
 class SharedNames:
-    """Warnings of node names that a launch shares with another launch.
+    """Warns about node names that a launch has in common with other programs in the network.
 
     Args:
-        network: the network, which knows the shared domain.
-        log: where the warning is logged.
-        show: called when `findings` change.
+        network: the network, whose domain the warning names.
+        log: the log for the warning.
+        show: called when `findings` have changed.
     """
 
     def __init__(self, network: Network, log: LaunchLog, show: Callable[[], None]) -> None:
@@ -106,8 +109,8 @@ class SharedNames:
         """The findings for the page: one as long as names are shared, else none."""
 
     def notice(self, names: frozenset[str]) -> None:
-        """Set the full names of the nodes that are shared now; may be called from any thread."""
-        with suppress(RuntimeError):  # The event loop may be closed.
+        """Set the full names of the nodes that exist twice now; may be called from any thread."""
+        with suppress(RuntimeError):  # The event loop may have been closed.
             self._loop.call_soon_threadsafe(self._gather, names)
 
     def close(self) -> None:

@@ -53,7 +53,7 @@ class NodeHost:
 
     @property
     def is_busy(self) -> bool:
-        """Whether nodes run in this process or are planned."""
+        """Whether any node is running in this process or is planned."""
         return bool(self._planned or self._running or self._viewers or self._starting.locked())
 
     @property
@@ -79,7 +79,7 @@ class NodeHost:
 
     @property
     def launcher_node(self) -> Node:
-        """The launcher's own node, with which it calls services and follows topics; created on first use."""
+        """The launcher's own node, which calls services and subscribes to topics; created on first use."""
         if self._launcher is None:
             self._launcher = self.graph.create_node(
                 f"launch_ros_{os.getpid()}", enable_rosout=False, parameters={"use_sim_time": self._simulated_time}
@@ -96,12 +96,12 @@ class NodeHost:
             self._launcher.set_parameters([Parameter("use_sim_time", value=value)])
 
     def plan(self, plan: HostedPlan) -> None:
-        """Start a node as soon as the launcher reaches it, unless the launch is ending."""
+        """Plan a node, which starts as soon as possible; ignored if the launch is ending."""
         if not self._closing:
             self._planned.append(plan)
 
     def forget_planned(self) -> None:
-        """Drop all plans that were not started."""
+        """Discard all plans that were not started."""
         self._planned.clear()
 
     async def serve_pages(self) -> None:
@@ -145,7 +145,11 @@ class NodeHost:
         self._show_findings()
 
     def stop_matching(self, matcher: Callable[[Any], bool]) -> None:
-        """End the nodes whose owners match, like a signal that ends their processes."""
+        """End the nodes whose owners match, as a signal would end their processes.
+
+        Args:
+            matcher: returns whether the owner of a node matches.
+        """
         for plan, running in tuple(self._running.values()):
             if matcher(plan.owner):
                 self._stop_node(plan, running)
@@ -206,7 +210,10 @@ class NodeHost:
         self._viewers.attach_panel(running)
 
     def _not_started(self, plan: HostedPlan, error: LinkwrightError) -> None:
-        """Log the reason; a node with an invalid model file is started as soon as the file is fixed."""
+        """Log why a node could not start.
+
+        A node whose model file is not valid is started as soon as the file is fixed.
+        """
         session = self._session
         found = self._description_of(plan) if plan.waits else None
         if found is None or session.ending:
@@ -228,7 +235,7 @@ class NodeHost:
         session.reload.report(call, error.diagnostics)
 
     def _bind_descriptions(self, process_name: str, running: RunningNode, parameters: Mapping[str, Any]) -> None:
-        """Pass every new text of the node's descriptions to it, and show the findings about the first."""
+        """Pass new texts of a node's descriptions to the node, and show the findings about the current ones."""
         from linkwright.nodes.options import NodeWithDescription
 
         session = self._session
@@ -273,7 +280,7 @@ class NodeHost:
         self._ended(plan, status)
 
     def _finished(self, plan: HostedPlan, running: RunningNode, done: asyncio.Future[int]) -> None:
-        """Close a node that has finished, and restart it if it respawns."""
+        """Close a node that has finished, and restart it if its plan requires a restart."""
         if plan.process_name not in self._running or done.cancelled():
             return
         self._stop_node(plan, running, done.result())
@@ -339,9 +346,9 @@ class NodeHost:
 
     @contextmanager
     def _holding_back(self) -> Iterator[None]:
-        """Suppress the fatal messages of a node that fails to start.
+        """Keep the fatal log records of a node that fails to start off the screen, in a ``with`` block.
 
-        Its diagnostics report the errors with their place.
+        The node's diagnostics report the errors, with their source positions.
         """
         self._held_back, off_screen = [], False
         try:
@@ -365,7 +372,10 @@ class NodeHost:
             self._speaking = before
 
     def _process_of(self, logger: str) -> str:
-        """Return the process of a logger, found by its name, its ancestors' names or the node that created it."""
+        """Return the process name for a logger.
+
+        It is found by the logger's name, by the names of its ancestors, or by the node that created the logger.
+        """
         makers = {} if self._graph is None else dict(self._graph.creators)
         while logger:
             if logger in self._process_of_logger:

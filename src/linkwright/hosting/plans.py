@@ -1,4 +1,4 @@
-"""Plans of hosted nodes and viewers, and the interface between their host and its run."""
+"""Plans of hosted nodes and viewers, and the interface between the host of nodes and its run."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ _GAZEBO_WINDOW = "gzclient"
 
 @dataclass(eq=False)
 class HostedPlan:
-    """A node to start in this process.
+    """The plan of a node or viewer that is started in this process.
 
     Attributes:
-        owner: the object that requests the node, such as an action of a launch file; None for a node that another
+        owner: the object that requests the node, such as an action of a launch file; None for a node that another node
             needs.
         process_name: the name in the log, such as ``robot_state_publisher-1``.
         package: the package of the node.
@@ -44,13 +44,14 @@ class HostedPlan:
         remappings: rules ``(from, to)``.
         arguments: the command line.
         viewer_config: returns the viewer's configuration; by default the command line selects it.
-        viewer_started: called with the viewer when it runs.
-        destinations: where the node's lines on stdout (1) and stderr (2) go, see `linkwright.hosting.launch_log`.
+        viewer_started: called with the viewer after it has started.
+        destinations: the destinations of the node's lines on stdout (1) and stderr (2), see
+            `linkwright.hosting.launch_log`.
         respawns: how often the node is restarted after it has finished; without limit if negative.
         respawn_delay: the seconds to wait before a restart.
         for_others: parameters for further nodes that the node creates, by node name; None for none.
         environment: the environment variables at the time of the plan.
-        waits: whether a node that cannot start with its model starts as soon as the model file is fixed.
+        waits: whether a node that cannot start because of its model file is started as soon as the file is fixed.
     """
 
     owner: Any
@@ -78,12 +79,12 @@ class HostedPlan:
 
     @property
     def opens_gazebo_window(self) -> bool:
-        """Whether the program is Gazebo's window, or also opens one."""
+        """Whether the executable is Gazebo's window, or also opens that window."""
         return self.executable == _GAZEBO_WINDOW or self.parameters.get("gui") is True
 
     @property
     def gazebo_window(self) -> HostedPlan:
-        """The viewer that replaces the window that this node opens."""
+        """The plan of the viewer that replaces Gazebo's window."""
         from linkwright.hosting.world_config import world_config
 
         return HostedPlan(
@@ -136,9 +137,9 @@ class HostOptions:
         port: the server's port; None for the default port, or the next free one.
         open_browser: whether the page is opened in the user's browser.
         title: the title of the page.
-        network: whether the nodes join the ROS 2 network, where other programs see them.
-        history: how many bytes of messages a viewer stores as live history; 0 for no history.
-        rviz: the file with the displays of the viewer; None for the default ones.
+        network: whether the nodes join the ROS 2 network, where other programs discover them.
+        history: the maximum number of bytes of messages that a viewer stores as live history; 0 for no history.
+        rviz: the file with the viewer's configuration; None for the default one.
     """
 
     host: str = "127.0.0.1"
@@ -182,13 +183,13 @@ class Supervisor(Protocol):
         """Whether the run includes any processes in addition to nodes."""
 
     def fail(self, what: object) -> None:
-        """Record a failure: the exit status is 1 unless the failure is cleared."""
+        """Record a failure of `what`: the exit status is 1 unless the failure is cleared."""
 
     def clear_failure(self, what: object) -> None:
-        """Clear a failure that was fixed."""
+        """Clear the recorded failure of `what`, because it was fixed."""
 
     def spawn(self, work: Coroutine[Any, Any, None]) -> None:
-        """Run a coroutine in the background; the run ends after it."""
+        """Run a coroutine in the background; the run waits for it before it ends."""
 
     def shut_down(self, reason: str) -> None:
         """End the run as soon as the current work is completed."""

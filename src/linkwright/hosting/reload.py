@@ -1,7 +1,7 @@
 """Live reload: a saved model file is expanded again and passed to the nodes that show it.
 
-The nodes keep running, so joint positions and the camera are kept. If a model cannot be read, the last valid one
-remains in use, and the errors are shown until the file is fixed.
+The nodes continue to run, so that joint positions and the camera are preserved. If a model cannot be read, the last
+valid one remains in use, and the errors are shown until the file is fixed.
 """
 
 from __future__ import annotations
@@ -37,12 +37,12 @@ Apply = Callable[[str], None]
 
 
 class LiveReload:
-    """Watches the files of a launch's descriptions.
+    """Watches the files of a launch's descriptions, and reloads the descriptions on changes.
 
     Args:
         descriptions: the descriptions of the launch.
         show: called with all current findings, which the viewer shows.
-        log: where findings are printed.
+        log: the log in which findings are printed.
 
     Attributes:
         descriptions: expands the descriptions.
@@ -67,21 +67,18 @@ class LiveReload:
         self._watch_files()
 
     def unbind(self, call: XacroCall, apply: Apply) -> None:
-        """Stop calling `apply`."""
+        """Stop calling `apply` with new texts of a description."""
         self._targets[call].remove(apply)
 
     def show(self, about: object, diagnostics: Iterable[Diagnostic]) -> None:
-        """Show findings about an object that are already printed.
-
-        No findings clear the earlier ones.
-        """
+        """Show findings about an object that were already printed; they replace the earlier ones."""
         self._findings[about] = tuple(diagnostics)
         self._show(self.findings())
 
     def report(self, about: object, diagnostics: Iterable[Diagnostic]) -> None:
-        """Print the findings of a description and show them; no findings clear the earlier ones.
+        """Print and show the findings about an object; they replace the earlier ones.
 
-        Errors are printed each time the file is saved while they persist, warnings and remarks only once.
+        Errors that persist are printed each time the file is saved, warnings and notes only once.
         """
         findings = tuple(diagnostics)
         known = {_essence(finding) for finding in self._findings.get(about, ())}
@@ -129,7 +126,7 @@ class LiveReload:
         self._log.warning_line("launch", f"model files are not watched for changes: {reason}")
 
     def _catch_up(self) -> None:
-        """Reload the files that were saved or removed after they were read and before the watch began."""
+        """Reload descriptions whose files changed after they were read and before the watch began."""
         for call in self._targets if not self._closed else ():
             read_ns = self.descriptions.read_ns(call)
             saved = [_saved_ns(path) for path in self._files_of_interest(call)]
@@ -146,7 +143,7 @@ class LiveReload:
             if not paths.isdisjoint(files | {real(file) for file in files}):
                 self._saved.add(call)
             if self._is_broken(call):
-                # Any file next to it, and any package, may be the missing one.
+                # The missing file may be any file next to this one, or in any package.
                 self.descriptions.finder.forget()
                 self._start_reload(call)
             elif call in self._saved:
@@ -180,7 +177,7 @@ class LiveReload:
                 break
             await asyncio.sleep(_SETTLE_SECONDS)
             if call in self._again:
-                return  # A newer change starts a new reload.
+                return  # A newer change has already started another reload.
         known = [_essence(finding) for finding in self._findings.get(call, ())]
         if call in self._saved or known != [_essence(finding) for finding in findings]:
             self.report(call, findings)
@@ -188,7 +185,7 @@ class LiveReload:
         self._watch_files()
 
     async def _read(self, call: XacroCall) -> tuple[str | None, tuple[Diagnostic, ...]]:
-        """Return the text and the findings about it; no text if the model has no robot."""
+        """Return the text of a description, or None if it has no robot, and the findings about it."""
         loop = asyncio.get_running_loop()
         try:
             description = await loop.run_in_executor(None, self.descriptions.read, call)
@@ -215,7 +212,7 @@ def _essence(finding: Diagnostic) -> tuple[object, ...]:
 
 
 def _saved_ns(path: Path) -> int:
-    """Return when a file was changed; 0 if it does not exist."""
+    """Return the modification time of a file in nanoseconds since the epoch, or 0 if it does not exist."""
     try:
         return path.stat().st_mtime_ns
     except OSError:
@@ -245,7 +242,7 @@ class FileWatch:
         """Watch the folders of these files, and no other folders, from now on.
 
         Returns:
-            Whether a new watch begins, which takes a moment.
+            Whether a new watch begins, which does not detect changes immediately.
         """
         folders = frozenset(
             (str(folder), number)
@@ -295,18 +292,18 @@ class FileWatch:
 
     def _changed(self, paths: set[Path]) -> None:
         if not paths.isdisjoint(Path(name) for name, _ in self._folders):
-            self._folders = frozenset()  # A folder was deleted; a new one may get the same number.
+            self._folders = frozenset()  # A folder was deleted, and a new folder may get the same number.
         self._on_change(paths)
 
     def _call(self, function: Callable[..., None], argument: object) -> None:
         try:
             self._loop.call_soon_threadsafe(function, argument)
-        except RuntimeError:  # The loop is closed: the launch is over.
+        except RuntimeError:  # The loop was closed, because the launch has ended.
             return
 
 
 def _nearest_folder(file: Path) -> tuple[Path, int]:
-    """Return the nearest existing folder above a file, and a number that identifies it after it was replaced."""
+    """Return the nearest existing folder above a file, and a number that changes if it is replaced."""
     for folder in file.absolute().parents:
         try:
             facts = folder.stat()
@@ -326,10 +323,10 @@ def real(path: Path) -> Path:
 
 
 class FollowedFiles:
-    """Watches the files of one node, as its `FileFollower`.
+    """The `FileFollower` of one node, which watches the node's files.
 
     Args:
-        reload: the live reload of the run to which the node belongs.
+        reload: the live reload of the run that the node belongs to.
         spawn: runs a coroutine in the background of the run.
         launcher: returns the node that calls services.
     """
@@ -357,7 +354,13 @@ class FollowedFiles:
         read: Callable[[str], ReadWorld],
         load: Callable[[str], Awaitable[Sequence[Diagnostic]]],
     ) -> None:
-        """Read the file of a world when it is saved, and load it if it has no new errors."""
+        """Read the file of a world again when it is saved, and load the world unless it has new errors.
+
+        Args:
+            world: the world as it was read.
+            read: reads the file of a world.
+            load: loads the text of a world, and returns findings.
+        """
         call = self._reload.descriptions.begin_with(world, read)
 
         async def load_saved(path: str) -> None:
@@ -368,7 +371,7 @@ class FollowedFiles:
         self._reload.bind(call, lambda path: self._spawn(load_saved(path)))
 
     def follow_text(self, text: str, name: str, renew: Callable[[str], None]) -> None:
-        """Call back with each new text of a description, if this process expanded it from a file."""
+        """Call `renew` with each new text of a description, if this process expanded it from a file."""
         call = self._reload.descriptions.call_of(text)
         if call is not None and (call, name) not in self._followed:
             self._followed.add((call, name))

@@ -1,4 +1,4 @@
-"""The command line of ``rviz2``, as far as the replacing viewer supports it."""
+"""The part of the command line of ``rviz2`` that the replacing viewer supports."""
 
 from __future__ import annotations
 
@@ -45,9 +45,9 @@ def asks_for_help(arguments: Sequence[str]) -> bool:
 
 
 def read_viewer_config(arguments: Sequence[str]) -> tuple[RvizConfig, list[Diagnostic]]:
-    """Return the configuration that the arguments request, and findings about them.
+    """Return the configuration that the arguments select, and findings about them.
 
-    As in RViz, a file that cannot be read is reported and replaced by the default configuration.
+    As in RViz, a file that cannot be read is reported, and the default configuration is used instead.
     """
     from linkwright.rviz import RvizConfig
 
@@ -72,7 +72,7 @@ def _read(arguments: Sequence[str]) -> tuple[str | None, str | None, list[Diagno
     waiting = iter(arguments)
     for argument in waiting:
         if argument == "--ros-args":
-            for option in waiting:  # names and remappings of a node; the viewer keeps those of the file
+            for option in waiting:  # ROS arguments do not affect the configuration
                 if option == "--":
                     break
         elif argument in _CONFIG or argument in _FIXED_FRAME:

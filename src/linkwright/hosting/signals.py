@@ -1,6 +1,6 @@
 """Handling of Ctrl-C and other signals.
 
-The first signal ends a run in order, the second hurries, and the third ends it immediately.
+The first signal ends a run in order, the second one hurries the end, and the third one ends the run immediately.
 
 Work that must be completed, such as writing the end of a recording, is completed in any case (`unfinished`).
 """
@@ -40,11 +40,11 @@ class Session(Protocol):
 
     @property
     def loop(self) -> asyncio.AbstractEventLoop | None:
-        """The event loop of the run, or None."""
+        """The event loop of the run, or None before it exists."""
 
     @property
     def visiting(self) -> bool:
-        """Whether code is running that a KeyboardInterrupt should interrupt, because the event loop cannot react."""
+        """Whether code is running that blocks the event loop and that a KeyboardInterrupt may interrupt."""
 
     def interrupt(self, reason: str) -> None:
         """End the run at the user's request."""
@@ -59,10 +59,10 @@ class Session(Protocol):
 class SignalWatch:
     """Handles signals inside a ``with`` block.
 
-    Works only in the main thread, and does nothing elsewhere.
+    In a thread other than the main thread, signals are not handled.
 
     Attributes:
-        session: the run to end; None before one exists, when a KeyboardInterrupt is raised instead.
+        session: the run to end; None before one exists, when a signal raises a KeyboardInterrupt instead.
         received: the first received signal, or None.
     """
 
@@ -78,7 +78,7 @@ class SignalWatch:
 
     @property
     def exit_status(self) -> int | None:
-        """The exit status for the signal, as in shells: 128 and its number."""
+        """The exit status for the received signal, 128 plus its number as in shells, or None."""
         return None if self.received is None else 128 + self.received
 
     def __enter__(self) -> SignalWatch:  # noqa: PYI034 - typing.Self needs Python 3.11
@@ -135,7 +135,7 @@ class SignalWatch:
         session.loop.call_soon_threadsafe(session.interrupt, interruption_text(number))
 
     def _loop_runs(self, session: Session) -> None:
-        """Extend the deadline, because the event loop reacts: it may take as long as the processes may."""
+        """Extend the deadline by the time that processes may take, because the event loop responds."""
         if not self._hurried:
             self._end_after(_DEADLINE_SECONDS + session.seconds_to_end())
 
@@ -147,7 +147,7 @@ class SignalWatch:
         self._deadline.start()
 
     def _handle_again(self) -> None:
-        """Restore the earlier state and send the signal again, because its KeyboardInterrupt was lost."""
+        """Restore the former state and send the signal again, because its KeyboardInterrupt had no effect."""
         number, self.received = self.received, None
         if self._deadline is not None:
             self._deadline.cancel()
@@ -157,7 +157,7 @@ class SignalWatch:
     def _end_at_once(self) -> None:
         """End the process from a separate thread.
 
-        The main thread may hang, or write files that must be completed.
+        The main thread may be blocked, or may be writing files that must be completed.
         """
         if self.session is not None:
             self.session.kill_all()
@@ -175,12 +175,12 @@ def interruption_text(number: int) -> str:
 
 
 def run_to_end(run: Callable[[SignalWatch], bool], finder: PackageFinder, log: LaunchLog) -> int:
-    """Run a program that signals end.
+    """Run a program that ends in order after a signal.
 
     Args:
-        run: runs the program, and returns whether nothing failed.
+        run: runs the program, and returns whether it succeeded.
         finder: finds packages during the run.
-        log: where signals are reported that arrive before there is a session.
+        log: the log for signals that arrive before there is a session.
 
     Returns:
         The exit status: 0, 1 if something failed, or 128 plus the signal's number after a signal.
@@ -190,7 +190,7 @@ def run_to_end(run: Callable[[SignalWatch], bool], finder: PackageFinder, log: L
             with own_environment(finder):
                 succeeded = run(signals)
         except KeyboardInterrupt:
-            if signals.received is None:  # not in the main thread, or raised by the user's own code
+            if signals.received is None:  # raised in another thread, or by the user's own code
                 raise
             log.warning_line("launch", interruption_text(signals.received))
             succeeded = False

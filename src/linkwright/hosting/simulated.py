@@ -1,4 +1,4 @@
-"""A simulated world, with or without a robot, that needs no launch file."""
+"""The view of a simulated world, with or without a robot, which needs no launch file."""
 
 from __future__ import annotations
 
@@ -38,31 +38,31 @@ def _as_it_is(description: Description) -> str:
 
 
 def _completed(description: Description, found: Inference) -> str:
-    from linkwright.inference.applying import complete_description  # Imported here because only some robots need it.
+    from linkwright.inference.applying import complete_description  # Only some robots need it.
 
     return write(complete_description(description.document, found))
 
 
 @dataclass(frozen=True, slots=True)
 class SimulatedWorld:
-    """A world, and the robot or model in it.
+    """A world to simulate, and the robot or model in it.
 
     Attributes:
         world: a file, or the name of a world.
-        path: the file after which the page is named.
+        path: the file that gives the page its name.
         description: a robot in URDF; None for no robot, or for a model in SDF.
         text: the simulated robot or model, as URDF or SDF; empty for none.
         name: the name of the robot or model in the world.
-        pose: the pose of its frame: x, y, z in m, roll, pitch, yaw in rad.
+        pose: the pose of the robot's or model's frame: x, y, z in m, roll, pitch, yaw in rad.
         seconds: the simulated seconds after which the run ends; 0 for never.
         rate: simulated seconds per real second; 0 for the world's rate, negative for as fast as possible.
         step: the time step in s; 0 for the world's time step.
         seed: the seed of all random numbers.
         paused: whether the simulation starts paused.
-        headless: whether there is no page.
+        headless: whether no page is served.
         gazebo_mistakes: whether plugins reproduce the known bugs of Gazebo.
         arguments: name and value of the robot's xacro arguments.
-        complete: returns the text to simulate, from the robot's saved file.
+        complete: returns the text to simulate for a description that was read from the robot's saved file.
     """
 
     world: str
@@ -85,7 +85,7 @@ class SimulatedWorld:
     def of(
         cls, world: str, description: Description, found: Inference, infer: Callable[[Robot], Inference]
     ) -> SimulatedWorld:
-        """Return a world with a robot on its ground, completed by everything inferred about the robot.
+        """Return a world with a robot on the ground, completed with the values inferred for the robot.
 
         Args:
             world: a file, or the name of a world.
@@ -128,7 +128,7 @@ def run_simulated(
     foxglove: int | None = None,
     writer: BagWriter | None = None,
 ) -> int:
-    """Simulate a world until the user ends it, or its simulated seconds are over.
+    """Simulate a world until the user ends the run, or its simulated seconds have passed.
 
     Args:
         world: the world, and the model in it.
@@ -154,9 +154,9 @@ def run_simulated(
 
 
 class SimulatedView(ModelView):
-    """A simulated world on the running event loop.
+    """The view of a simulated world on the running event loop.
 
-    It runs the simulator, a robot's robot_state_publisher, and the viewer.
+    The nodes are the simulator, the robot's robot_state_publisher, and the viewer.
     """
 
     def __init__(self, world: SimulatedWorld, finder: PackageFinder, options: HostOptions, log: LaunchLog) -> None:
@@ -166,9 +166,9 @@ class SimulatedView(ModelView):
         self._files = descriptions
 
     def _publish(self) -> bool:
-        """Plan the publication of the robot, if there is one.
+        """Plan the publication of the robot, if there is one, and return whether the view continues.
 
-        It and the world are reloaded when their files are saved.
+        The robot and the world are reloaded when their files are saved.
         """
         description, text = self._world.description, self._world.text
         if text:
@@ -189,7 +189,8 @@ class SimulatedView(ModelView):
     def _viewer_config(self) -> RvizConfig:
         """Return a configuration that shows the world with the robot, its scans and images.
 
-        Images take time to render, so only those of the first camera are shown; odometry would cover the robot.
+        Only the images of the first camera are shown, because rendering takes time. Odometry is not shown, because it
+        would cover the robot.
         """
         from linkwright.hosting.world_config import world_config
 

@@ -1,4 +1,4 @@
-"""Files of a simulated world and its robot, which are reloaded when they are saved."""
+"""The files of a simulated world and its robot, which are reloaded when they are saved."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 
 
 class SimulatedDescriptions(Descriptions):
-    """Reads robots as they are simulated, models in SDF, and worlds.
+    """Reads robots in their simulated form, models in SDF, and worlds.
 
     Args:
         finder: finds packages.
-        complete: returns the text of a robot as it is simulated.
+        complete: returns the simulated text of a robot, with all inferred values.
     """
 
     def __init__(self, finder: PackageFinder, complete: Callable[[Description], str]) -> None:
@@ -32,7 +32,8 @@ class SimulatedDescriptions(Descriptions):
         """Read a robot, model or world; may run in another thread.
 
         Raises:
-            LinkwrightError: the file is invalid; for a world, only because of errors that did not exist at the start.
+            LinkwrightError: the file is not valid; for a world, only because of errors that it did not have at the
+                start.
         """
         if not isinstance(call, WorldCall) and is_world(call.path.name):
             return self._read_model(call)
@@ -41,7 +42,7 @@ class SimulatedDescriptions(Descriptions):
     def take(self, call: XacroCall, description: Any) -> tuple[str | None, tuple[Diagnostic, ...]]:
         """Store a robot, model or world.
 
-        Returns its text (for a world, its file) and the findings about it.
+        Return its text (for a world, the path of its file) and the findings about it.
         """
         if isinstance(call, WorldCall):
             return super().take(call, description)
@@ -55,7 +56,7 @@ class SimulatedDescriptions(Descriptions):
         return self.take_text(call, self._complete(description), description.files), description.diagnostics
 
     def take_text(self, call: XacroCall, text: str, files: tuple[Path, ...]) -> str:
-        """Store the file of a simulated text, and all files from which the text was made."""
+        """Store a simulated text with all files from which it was made, and return the text."""
         self._calls[text] = call
         self._files[call] = files
         return text

@@ -39,12 +39,12 @@ def run_view(
     *,
     foxglove: int | None = None,
 ) -> int:
-    """Show a URDF or xacro file, with sliders for its joints, until the user ends it.
+    """Show a URDF or xacro file, with sliders for its joints, until the user ends the view.
 
     Args:
         model_path: the file.
         arguments: name -> value of the xacro arguments.
-        options: the options of nodes and viewers; by default no other program sees the nodes.
+        options: the options of nodes and viewers; by default no other program discovers the nodes.
         foxglove: a port for Foxglove and Lichtblick to connect to; None for none.
 
     Returns:
@@ -67,10 +67,10 @@ def run_view(
 
 
 class ModelView:
-    """The view of one model, on the running event loop: robot_state_publisher, sliders and the viewer.
+    """The view of one model on the running event loop: robot_state_publisher, sliders and the viewer.
 
     Args:
-        call: the model.
+        call: the model file and its arguments.
         finder: finds packages.
         options: the options of nodes and viewers.
         log: the log of the run.
@@ -78,7 +78,7 @@ class ModelView:
 
     Attributes:
         ending: whether the view is about to end.
-        visiting: whether the model is being expanded, so that the event loop cannot react.
+        visiting: whether the model is being expanded, which blocks the event loop.
         has_processes: always false.
     """
 
@@ -116,7 +116,7 @@ class ModelView:
     async def run(self, foxglove: int | None, writer: BagWriter | None = None) -> bool:
         """Show the model until the user ends the view, or a viewer cannot start.
 
-        Returns whether nothing failed.
+        Return whether everything succeeded.
 
         Args:
             foxglove: a port for Foxglove and Lichtblick to connect to; None for none.
@@ -135,7 +135,7 @@ class ModelView:
                     await self.host.start_planned()
                     self.reload.start()
             await self._is_over.wait()
-            self._end_recording()  # First, because the rest takes time: nothing more is to be recorded.
+            self._end_recording()  # The recording must end before the rest, which takes time.
             self.ending = True
             self.reload.close()
             self.host.close_nodes()
@@ -149,7 +149,10 @@ class ModelView:
         return not self._failures
 
     def _recording(self, writer: BagWriter) -> Recorder:
-        """Return a recorder; if the disk is full, it logs an error, the view continues, and the exit status is 1."""
+        """Return a recorder.
+
+        If the disk is full, the error is logged and the recording ends. The view continues, and its exit status is 1.
+        """
         from linkwright.bag import Recorder, TopicSelection
 
         def guarded(callback: Callable[..., object]) -> Callable[..., object]:
@@ -183,9 +186,9 @@ class ModelView:
     # --- what is shown ----------------------------------------------------------------------------------------
 
     def _publish(self) -> bool:
-        """Plan the publication of the model once its file is valid.
+        """Plan the publication of the model, now or as soon as its file is valid.
 
-        Returns whether the view continues.
+        Return whether the view continues.
         """
         self.visiting = True
         try:
@@ -211,7 +214,7 @@ class ModelView:
         return True
 
     def _plan_others(self) -> None:
-        """Plan the nodes that show the model."""
+        """Plan the other nodes: the sliders and the viewer."""
         self._plan("joint_state_publisher_gui", "joint_state_publisher_gui")
         self._plan(*VIEWER, name="viewer", viewer_config=self._viewer_config, viewer_started=self._set_viewer)
 
@@ -223,7 +226,7 @@ class ModelView:
         self._publish_again(self._call)
 
     def _publish_again(self, call: XacroCall) -> None:
-        """Publish a model that was invalid before, or the same model with other arguments."""
+        """Publish a model whose file was not valid before, or the same model with other arguments."""
         broken, self._call, self._form = self._call, call, None
         self.reload.unbind(broken, self._publish_repaired)
         self.reload.show(broken, ())
@@ -234,7 +237,7 @@ class ModelView:
         self.spawn(self.host.start_planned())
 
     async def _find_arguments(self, call: XacroCall, error: DescriptionError) -> None:
-        """Ask the pages for arguments, if the error is that some are missing."""
+        """Show pages a form for arguments if the error is that arguments have no value."""
         form = await asyncio.to_thread(argument_form, call, self.finder, error.diagnostics)
         if form is not None and call is self._call and self._text is None:
             self._form = form
@@ -252,7 +255,7 @@ class ModelView:
         self._publish_again(XacroCall(self._call.path, tuple(values.items())))
 
     def _look_at_root(self) -> None:
-        """Set the fixed frame to the root of a model that was unknown when the viewer started."""
+        """Set the Fixed Frame to the root link of the model, unless it is a link of the model already."""
         robot = None if self._text is None else self.descriptions.library.read(self._text).robot
         manager = None if self._viewer is None else self._viewer.managers.shared
         if robot is not None and manager is not None and manager.fixed_frame not in robot.links:
@@ -289,7 +292,7 @@ class ModelView:
         self.host.plan(plan)
 
     def _viewer_config(self) -> RvizConfig:
-        """Return a configuration with Grid, RobotModel and TF, whose fixed frame is the root link.
+        """Return a configuration with Grid, RobotModel and TF, whose Fixed Frame is the root link.
 
         TF is enabled only if the model has no visuals.
         """
@@ -303,14 +306,14 @@ class ModelView:
         frames = robot is not None and not has_visuals(robot, finder)
         return RvizConfig.for_model(frame, size=size, frames=frames, name=str(self._call.path))
 
-    # --- what its nodes and signals ask for ---------------------------------------------------------------------
+    # --- interface for nodes and signals ------------------------------------------------------------------------
 
     def fail(self, what: object) -> None:
-        """Record a failure: the exit status is 1 unless the failure is cleared."""
+        """Record a failure of `what`: the exit status is 1 unless the failure is cleared."""
         self._failures.add(what)
 
     def clear_failure(self, what: object) -> None:
-        """Clear a failure that was fixed."""
+        """Clear the recorded failure of `what`, because it was fixed."""
         self._failures.discard(what)
 
     def spawn(self, work: Coroutine[Any, Any, None]) -> None:
@@ -326,16 +329,16 @@ class ModelView:
             self._is_over.set()
 
     def node_started(self, plan: HostedPlan) -> None:
-        """Begin the log with the first node.
+        """Log the first lines of the log when the first node has started.
 
-        Thus an error that prevents all nodes from starting is printed alone.
+        If an error prevents all nodes from starting, only that error is printed.
         """
         if not self._has_begun:
             self._has_begun = True
             self.log.begin()
 
     def node_ended(self, plan: HostedPlan, status: int) -> None:
-        """Do nothing: this view does not depend on its nodes."""
+        """Do nothing, because this view continues without its nodes."""
 
     def interrupt(self, reason: str) -> None:
         """End the view at the user's request."""
@@ -343,7 +346,7 @@ class ModelView:
         self._is_over.set()
 
     def shut_down(self, reason: str) -> None:
-        """End the view; nodes that have not started yet do not start."""
+        """End the view; planned nodes are not started any more."""
         self.host.forget_planned()
         self._is_over.set()
 

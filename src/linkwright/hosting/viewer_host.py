@@ -1,4 +1,4 @@
-"""The viewers of this process: pages that replace RViz."""
+"""The viewers of this process, whose pages replace RViz's windows."""
 
 from __future__ import annotations
 
@@ -57,14 +57,14 @@ class ViewerHost:
             viewer.show_diagnostics(findings)
 
     def attach_panel(self, running: RunningNode) -> None:
-        """Show the sliders of a node, if it has any."""
+        """Show the sliders of a node in the viewers, if the node has sliders."""
         for _, viewer in self._viewers.values():
             _attach_panel(viewer, running)
 
     async def serve_page(self, plan: HostedPlan) -> None:
-        """Serve the page of a viewer and print its address.
+        """Serve the page of a viewer that is not created yet, and print the page's address.
 
-        Thus the page is fetched while the viewer is created.
+        The browser can then load the page while the viewer is being created.
 
         Raises:
             LinkwrightError: VIEW101 to VIEW103, the server cannot listen at the address.
@@ -116,7 +116,7 @@ class ViewerHost:
             from linkwright.hosting.world_config import show_world
 
             show_world(config)
-        server = self._servers.get(plan.process_name)  # It must be closed here if creating the viewer fails.
+        server = self._servers.get(plan.process_name)  # If creating the viewer fails, the server must be closed here.
         is_given_out = server is not None
         if server is None:
             server = PageServer(session.options.host, self._port_for(plan))
@@ -149,7 +149,7 @@ class ViewerHost:
             _attach_panel(viewer, running)
 
     async def _open_unless_back(self, viewer: Viewer) -> None:
-        """Open the page, unless an open page of the previous run reconnects on its own."""
+        """Open the page in a browser, unless a page of the previous run reconnects."""
         for _ in range(round(_RETURN_SECONDS / _LOOK_SECONDS)):
             if self._session.ending or len(viewer.audience) > 0:
                 return
@@ -157,7 +157,7 @@ class ViewerHost:
         _open_in_browser(viewer.url)
 
     def _port_for(self, plan: HostedPlan) -> int | None:
-        """Return the requested port; None for the next free one if another page uses it."""
+        """Return the requested port, or None for the next free port if another page uses it."""
         port = self._session.options.port
         if port and self._at_given_port not in ("", plan.process_name):
             return None
@@ -169,7 +169,7 @@ class ViewerHost:
             self._at_given_port = ""
 
     def pop_viewer(self, plan: HostedPlan) -> Viewer:
-        """Remove a viewer that is about to end, and return it."""
+        """Remove a viewer from the running ones, and return it so that the caller ends it."""
         self._release_port(plan)
         return self._viewers.pop(plan.process_name)[1]
 
@@ -179,7 +179,10 @@ class ViewerHost:
             await self._servers.popitem()[1].close()
 
     async def stop(self, plan: HostedPlan, viewer: Viewer) -> None:
-        """End a viewer; its unsaved configuration is stored first, in case the shutdown takes too long."""
+        """End a viewer.
+
+        Its unsaved edits are stored first, in case ending it takes too long.
+        """
         self._session.log.diagnostics(viewer.keep_unsaved())
         try:
             await asyncio.wait_for(viewer.close(), _CLOSE_SECONDS)
@@ -188,10 +191,7 @@ class ViewerHost:
 
 
 def load_viewer() -> None:
-    """Load the modules of viewers, which takes longer than all earlier steps.
-
-    May run in another thread.
-    """
+    """Import the modules of viewers; this takes a while, and may run in another thread."""
     import linkwright.viewer.guests
     import linkwright.viewer.viewer  # noqa: F401 - only loaded
 
@@ -204,9 +204,9 @@ def _attach_panel(viewer: Viewer, running: RunningNode) -> None:
 
 
 def _open_in_browser(url: str) -> None:
-    """Open the page, called in a thread because some browsers take time to respond.
+    """Open a page in the user's browser; runs in a thread, because some browsers respond slowly.
 
-    Does nothing without a display: a text browser would take over the terminal.
+    Without a display, nothing is opened: a text browser would take over the terminal.
     """
     displays = ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
     if sys.platform.startswith("linux") and not any(os.environ.get(name) for name in displays):

@@ -16,7 +16,7 @@ _DISTANCE = 5.0
 def world_config(name: str, x: float = 0.0, y: float = 0.0) -> RvizConfig:
     """Return a configuration with the world and its robots, on a grid, in a fixed view.
 
-    Its displays of robot models and transforms are disabled: they would draw the world's content a second time.
+    The displays of robot models and transforms are disabled, because they would draw content of the world twice.
 
     Args:
         name: the name of the page.
@@ -34,9 +34,9 @@ def world_config(name: str, x: float = 0.0, y: float = 0.0) -> RvizConfig:
 
 
 def show_world(config: RvizConfig) -> None:
-    """Add the display of the world to a configuration that lacks it.
+    """Add a World display to a configuration that has none.
 
-    The display is disabled if a map is in the same place.
+    The display is disabled if the configuration shows a map, which covers the same area.
     """
     if not shows_world(config):
         world = config.make(_DISPLAY, "World")

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class XacroCall:
-    """A use of xacro: a file and its arguments.
+    """A use of xacro: a model file and arguments.
 
     Attributes:
         path: the model file, absolute.
@@ -57,12 +57,12 @@ class DescriptionError(LinkwrightError):
 
     @property
     def missing(self) -> bool:
-        """Whether the model file itself cannot be read, so that no edit can fix it."""
+        """Whether the model file itself cannot be read, an error that no edit of the file can fix."""
         return not self.call.path.is_file() or not os.access(self.call.path, os.R_OK)
 
 
 class Descriptions:
-    """Expands model files and stores the results, with the positions that messages and the viewer need.
+    """Expands model files, and stores the results with their source positions.
 
     Args:
         finder: finds packages.
@@ -98,7 +98,9 @@ class Descriptions:
         return self.store(call, self.read(call))
 
     def begin_with(self, world: ReadWorld, read: Callable[[str], ReadWorld]) -> WorldCall:
-        """Store a world that was already read; its findings are known and not reported again.
+        """Store a world that was already read, and return its call.
+
+        The findings of this world are not reported again.
 
         Args:
             world: the world.
@@ -121,8 +123,8 @@ class Descriptions:
             The `Description` of a robot, or the `ReadWorld` of a world.
 
         Raises:
-            DescriptionError: the errors of the file, or of an included file, with the findings of its valid parts; for
-                a world, only errors that did not exist at the start.
+            DescriptionError: the errors of the file, or of an included file, with the findings of the parts that could
+                be read; for a world, only errors that the world did not have at the start.
         """
         if isinstance(call, WorldCall):
             return self._read_world(call)
@@ -130,7 +132,7 @@ class Descriptions:
 
         self.begin(call)
         try:
-            xacro = None if call.path.suffix == ".sdf" else True  # Models in SDF can be shown, too.
+            xacro = None if call.path.suffix == ".sdf" else True  # SDF models are accepted too.
             found = examine(call.path, arguments=dict(call.arguments), packages=self.finder, xacro=xacro, partly=True)
         except LinkwrightError as error:
             raise DescriptionError(call, error.diagnostics) from error
@@ -143,7 +145,7 @@ class Descriptions:
         self._read_ns[call] = time.time_ns()
 
     def store(self, call: XacroCall, description: Description, text: str | None = None) -> str:
-        """Store a description; return its text, or `text` if another text identifies it elsewhere."""
+        """Store a description, and return the text that identifies it: `text`, or by default its own text."""
         text = self.library.store(description, text, self.finder)
         self._files[call] = description.files
         self._calls[text] = call
@@ -154,9 +156,9 @@ class Descriptions:
         return text
 
     def take(self, call: XacroCall, description: Any) -> tuple[str | None, tuple[Diagnostic, ...]]:
-        """Store a robot or world; return its text (for a world, its file) and the findings about it.
+        """Store the result of `read`, and return its text and the findings about it.
 
-        The text is None if there is no robot.
+        The text of a world is the path of its file. The text is None if the description has no robot.
         """
         if isinstance(call, WorldCall):
             self._set_world(call, description)
@@ -165,22 +167,22 @@ class Descriptions:
         return (None if description.robot is None else text), description.diagnostics
 
     def call_of(self, text: str) -> XacroCall | None:
-        """Return the use of xacro that resulted in a text; None for a text from elsewhere."""
+        """Return the call that resulted in a text, or None if the text was not expanded here."""
         return self._calls.get(text)
 
     def warnings_of(self, call: XacroCall) -> tuple[Diagnostic, ...]:
-        """Return the warnings of the last successful expansion."""
+        """Return the warnings of a call's last successful expansion; empty before it."""
         return self._warnings.get(call, ())
 
     def read_ns(self, call: XacroCall) -> int:
-        """Return the time, in nanoseconds since the epoch, at which the files were last read.
+        """Return the time in nanoseconds since the epoch at which the files of a call were last read.
 
-        The value is 0 if never.
+        The time is 0 if they were never read.
         """
         return self._read_ns.get(call, 0)
 
     def files_of(self, call: XacroCall) -> tuple[Path, ...]:
-        """Return the files that the last successful expansion read, and meshes.
+        """Return the files that the last successful expansion read, and the robot's or world's mesh files.
 
         Before the first successful expansion, return only the model file.
         """
@@ -226,7 +228,10 @@ _current: ContextVar[Descriptions | None] = ContextVar("linkwright_descriptions"
 
 
 def current_descriptions() -> Descriptions | None:
-    """Return the descriptions of the launch being loaded or run, for code without access to the launch."""
+    """Return the descriptions of the current launch, or None if there is none.
+
+    Code without access to the launch uses this function.
+    """
     return _current.get()
 
 

@@ -1,4 +1,4 @@
-"""Mass properties of links from their shapes: computing, judging and writing them."""
+"""Mass properties of links, which are computed from shapes, compared with the file, and written to it."""
 
 from linkwright.loading.deferred import deferred
 from linkwright.loading.lean_typing import TYPE_CHECKING

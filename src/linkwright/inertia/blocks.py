@@ -1,4 +1,4 @@
-"""The text of an ``<inertial>`` element."""
+"""The XML text of an ``<inertial>`` element."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ Attributes = tuple[tuple[str, str], ...]
 
 
 def inertial_parts(properties: MassProperties) -> tuple[tuple[str, Attributes], ...]:
-    """Return the children of ``<inertial>`` with their attributes, in the order in which they are written.
+    """Return the children of an ``<inertial>`` with their attributes, in the order of writing.
 
     The axes are those of the link. Numbers have six significant digits: the rounding is far smaller than the
     uncertainty of the shape, and keeps a valid tensor valid.
     """
     inertial = to_inertial(properties)
     xyz = inertial.origin.xyz
-    x, y, z = (_number(part, 1.0) for part in xyz)  # Round to nanometres, which are negligible.
+    x, y, z = (_number(part, 1.0) for part in xyz)  # Round to nanometres; smaller differences are negligible.
     names = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
     moments = [getattr(inertial, name) for name in names]
     largest = max(abs(moment) for moment in moments)
@@ -48,7 +48,7 @@ def inertial_block(properties: MassProperties, indent: str = "", step: str = "  
 
 
 def start_tag(tag: str, attributes: Attributes) -> str:
-    """Return the tag of an element without content; values are numbers and need no escaping."""
+    """Return the self-closing tag of an element; values are numbers and need no escaping."""
     return f"<{tag} " + " ".join(f'{name}="{value}"' for name, value in attributes) + "/>"
 
 

@@ -13,14 +13,14 @@ from linkwright.loading.lean_dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """The mass properties of a file compared with those of the shapes.
+    """The result of comparing a file's mass properties with those computed from the shapes.
 
     Attributes:
         mass: the mass in the file, in kg.
         mass_ratio: the mass in the file divided by the computed mass; None if one of them is not positive.
         center_distance: the distance between the centres of mass in m.
-        moment_ratios: the principal moments per kg in the file divided by the computed ones, the smallest first; None
-            if they cannot be divided.
+        moment_ratios: the principal moments per kg in the file divided by the computed ones, in the order of the
+            moments, smallest first; None if they cannot be divided.
         problems: the reasons why the file's values cannot be those of a body.
     """
 

@@ -24,7 +24,7 @@ _NOTHING = 1e-18
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """The estimated mass properties of a link, and the shapes that were not used.
+    """The mass properties of a link estimated from its shapes.
 
     Attributes:
         link: the link's name.
@@ -54,14 +54,14 @@ def estimate(
     mass: float | None = None,
     prefer: ShapeKind = "collision",
 ) -> Estimate:
-    """Estimate the mass properties of a link whose shapes are solid with a uniform density.
+    """Estimate the mass properties of a link from its shapes, filled with a uniform density.
 
     Overlapping parts of shapes count twice. The mass is the requested mass, else the mass from the requested density,
     else the mass of the link in the file, else the mass from `DEFAULT_DENSITY`.
 
     Args:
         link: the link.
-        meshes: the library of its meshes.
+        meshes: reads the link's meshes.
         density: the requested density in kg/m3.
         mass: the requested mass in kg.
         prefer: the kind of shapes to use; the other kind is used if the link has none of these (or none with a volume).
@@ -96,9 +96,9 @@ def estimate(
 def _solid(
     shape: Collision | Visual, kind: ShapeKind, meshes: MeshLibrary, notes: list[Phrase]
 ) -> MassProperties | None:
-    """Return a shape of density 1 in the link frame.
+    """Return the mass properties of a shape with density 1, in the link frame.
 
-    Returns None, with a note, if it has no volume or cannot be read.
+    Returns None, and adds a note, if the shape has no volume or cannot be used.
     """
     geometry = shape.geometry
     if max(map(abs, shape.origin.xyz)) > FARTHEST:

@@ -1,4 +1,4 @@
-"""Conversion between ``<inertial>`` and mass properties."""
+"""Conversion between ``<inertial>`` elements and mass properties."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from linkwright.urdf import Inertial, Pose
 
 
 def has_mass(inertial: Inertial) -> bool:
-    """Return whether an ``<inertial>`` has a mass that can be distributed over a shape."""
+    """Return whether an ``<inertial>`` has a usable mass, to be distributed over a shape."""
     return inertial.is_computable and inertial.mass > LEAST_MASS
 
 

@@ -1,4 +1,4 @@
-"""The mesh files of a description, each of which is found and read once."""
+"""The mesh files of a description, each of which is located and read once."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ quicker, together with its import."""
 
 
 class MeshLibrary:
-    """Finds and reads the meshes of a description.
+    """A reader of the meshes of a description.
 
-    A file that has not changed since it was read for another description is not read again while it is cached.
+    Meshes are cached across descriptions, and read again only if their file has changed.
 
     Args:
         finder: finds packages.
@@ -44,11 +44,11 @@ class MeshLibrary:
         self._outlines: dict[str, SmallMesh | None] = {}
 
     def locate(self, uri: str, element: Element | None = None) -> Path:
-        """Return the file of a URI, whether or not it exists.
+        """Return the path of the file that a URI refers to, whether or not it exists.
 
         Args:
             uri: ``package://``, ``file://`` or a path; a relative path starts at the folder of the file that contains
-                it.
+                the URI.
             element: the element in which the URI is written.
 
         Raises:
@@ -67,7 +67,7 @@ class MeshLibrary:
         return found
 
     def read(self, path: Path) -> TriangleMesh:
-        """Return the triangles of a file.
+        """Return the triangles of a mesh file, which is read at most once.
 
         Raises:
             LinkwrightError: the same errors as `read_mesh`.
@@ -93,7 +93,9 @@ class MeshLibrary:
         return self.read(self._checked(mesh, element)).scaled(mesh.scale)
 
     def outline(self, mesh: Mesh, element: Element | None = None) -> Outline:
-        """Return the outline of a URDF mesh, scaled, in the frame of its visual or collision.
+        """Return the scaled properties of a URDF mesh that checks use.
+
+        The result is in the frame of the visual or collision.
 
         Raises:
             LinkwrightError: the same errors as `locate` and `read`.
@@ -105,7 +107,11 @@ class MeshLibrary:
         return (self._outlines[key] or self.read(path)).scaled(mesh.scale)
 
     def _checked(self, mesh: Mesh, element: Element | None) -> Path:
-        """Return the file of a mesh, and refuse a scale that is out of range."""
+        """Return the path of a mesh's file.
+
+        Raises:
+            LinkwrightError: the same errors as `locate`; INR103, the scale is out of range.
+        """
         path = self.locate(mesh.filename, element)
         if max(map(abs, mesh.scale)) > FARTHEST:
             from linkwright.geometry.meshes import unreadable
@@ -120,7 +126,7 @@ class MeshLibrary:
 
 
 def _size_of(_: object, mesh: TriangleMesh) -> int:
-    """Return the size of a mesh in bytes, doubled for the data computed from it."""
+    """Return the size of a mesh in bytes, doubled to account for data computed from the mesh."""
     return 2 * (mesh.vertices.nbytes + mesh.faces.nbytes)
 
 
@@ -129,18 +135,18 @@ _CACHE: BoundedCache[tuple[str, int, int], TriangleMesh] = BoundedCache(_CACHE_S
 
 
 def _unchanged(path: Path, real: str) -> TriangleMesh:
-    """Return the triangles of a file.
+    """Return the triangles of a file from the cache, or read the file if it has changed.
 
     A glTF file is read each time, because it may refer to other files.
     """
-    from linkwright.geometry.meshes import read_mesh  # Imported here because checks of small meshes need no numpy.
+    from linkwright.geometry.meshes import read_mesh  # Checks of small meshes need no numpy.
 
     if path.suffix.lower() in (".glb", ".gltf"):
         return read_mesh(path)
     try:
         facts = os.stat(real)  # noqa: PTH116 - a path that is already text
     except OSError:
-        return read_mesh(path)  # raises an error with the reason
+        return read_mesh(path)  # This raises an error with the reason.
     key = real, facts.st_mtime_ns, facts.st_size
     found = _CACHE.values.get(key)
     if found is None:
@@ -154,9 +160,9 @@ _SMALL_MESHES: dict[tuple[str, int, int], SmallMesh] = {}
 
 
 def _small(real: str, kind: str) -> SmallMesh | None:
-    """Return the triangles of a small, simple file, read without arrays.
+    """Return the triangles of a small file without unusual content, read without arrays.
 
-    None means that the file must be read with arrays, which also report what is wrong with it.
+    Returns None for other files, which must be read with arrays; that also reports what is wrong with them.
     """
     try:
         facts = os.stat(real)  # noqa: PTH116 - as above

@@ -1,4 +1,4 @@
-"""Estimates of mass properties formatted as text for users and as JSON for programs."""
+"""Reports of estimated mass properties, as text for users and as JSON for programs."""
 
 from __future__ import annotations
 
@@ -45,13 +45,15 @@ _BASES = {
 def as_text(
     robot: Robot, estimates: Sequence[Estimate], written: Written | None = None, detailed: Collection[str] = ()
 ) -> str:
-    """Return a table of the links' mass properties, the worst first, with verdicts, in the user's language.
+    """Return a table of the links' mass properties with verdicts, the worst first.
+
+    The table is in the user's language.
 
     Args:
         robot: the robot.
         estimates: the estimates of its links.
-        written: the result of writing; the verdicts apply to the values in the file before it.
-        detailed: the links whose computed ``<inertial>`` follows the table, with its source.
+        written: the result of writing, if any; the verdicts apply to the values in the file before writing.
+        detailed: the links whose computed ``<inertial>`` is shown after the table.
     """
     verdicts = _verdicts(robot, estimates)
     ordered = sorted(estimates, key=lambda estimate: verdicts[estimate.link].place)
@@ -65,7 +67,7 @@ def as_text(
 
 
 def _table(rows: list[tuple[str, ...]]) -> Iterator[str]:
-    """Yield the lines of a table with its header; cells are left-aligned."""
+    """Iterate over the lines of a table with its header; cells are left-aligned."""
     lines = [tuple(map(localized, _HEAD)), *rows]
     widths = [max(map(shown_width, column)) for column in zip(*lines, strict=True)]
     for line in lines:
@@ -98,7 +100,7 @@ def _verdicts(robot: Robot, estimates: Sequence[Estimate]) -> Mapping[str, Verdi
 
 
 def as_json(robot: Robot, estimates: Sequence[Estimate], written: Written | None = None) -> str:
-    """Return the same data as a JSON object with a list ``links`` in file order.
+    """Return the data of `as_text` as JSON, with the links in the order of the estimates.
 
     Units are SI, and floats are written in full.
     """

@@ -1,4 +1,4 @@
-"""Verdicts, in words, on the ``<inertial>`` of a link compared with its shapes."""
+"""Verdicts on the ``<inertial>`` of a link, from a comparison with its shapes."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _OFF = 0.1
 
 
 class Standing(Enum):
-    """The quality of an ``<inertial>``, the worst first."""
+    """The grades of an ``<inertial>``, the worst first."""
 
     IMPOSSIBLE = "impossible"
     DOUBTFUL = "doubtful"
@@ -48,7 +48,7 @@ class Verdict:
         standing: the grade.
         words: the reason, as a clause.
         badness: the size of the error; comparable between verdicts with the same standing.
-        present: the values of the file, in the link frame; None if there are none, or none that can be used.
+        present: the values of the file, in the link frame; None if they are missing or unusable.
         density: the density of the link's shapes with the file's mass, in kg/m3; None if it is unknown.
         comparison: the comparison of the file with the shapes; None if there is nothing to compare.
     """
@@ -68,7 +68,7 @@ class Verdict:
 
 @dataclass(frozen=True, slots=True)
 class _Reason:
-    """A problem of an ``<inertial>``."""
+    """A problem of an ``<inertial>``, with its grade."""
 
     standing: Standing
     words: Phrase
@@ -81,7 +81,7 @@ def judge(link: Link, found: Estimate, bodies: Bodies) -> Verdict:
     Args:
         link: the link.
         found: the estimate from its shapes.
-        bodies: the robot's links grouped by fixed joints: a mass may include links without a mass.
+        bodies: the robot's links grouped by fixed joints; the mass of a link may include that of links without a mass.
     """
     if link.inertial is None:
         return _without(link, bodies)
@@ -90,7 +90,7 @@ def judge(link: Link, found: Estimate, bodies: Bodies) -> Verdict:
     present = from_inertial(link.inertial)
     shapes = link.collisions if found.kind == "collision" else link.visuals
     comparison = None if found.properties is None else compare(present, found.properties)
-    computed = found.properties if found.shapes == len(shapes) else None  # some of the shapes alone are not conclusive
+    computed = found.properties if found.shapes == len(shapes) else None  # A part of the shapes is not conclusive.
     alone = not bodies.includes_massless_links(link)
     reasons = [_Reason(Standing.IMPOSSIBLE, words) for words in problems(present)]
     density = None
@@ -116,7 +116,7 @@ def judge(link: Link, found: Estimate, bodies: Bodies) -> Verdict:
 
 
 def _without(link: Link, bodies: Bodies) -> Verdict:
-    """Return the verdict on a link without ``<inertial>``."""
+    """Return the verdict on a link without an ``<inertial>``."""
     body = bodies.of(link.name)
     members = [] if body is None else bodies.members(body)
     heavy = next((member.name for member in members if member.inertial is not None and member.inertial.mass > 0), None)
@@ -134,7 +134,7 @@ def _of_density(density: float, *, has_mesh: bool) -> list[_Reason]:
         words = phrase("denser than any solid: osmium has {density} kg/m3", density=grouped(HEAVIEST_DENSITY))
         return [_Reason(standing, words, log(density / HEAVIEST_DENSITY))]
     if density < LIGHTEST_DENSITY:
-        badness = log(LIGHTEST_DENSITY / density) if density > 0 else inf  # 0 for a negligible mass
+        badness = log(LIGHTEST_DENSITY / density) if density > 0 else inf  # The density is 0 for a negligible mass.
         return [_Reason(Standing.DOUBTFUL, phrase("lighter than air"), badness)]
     return []
 
@@ -167,5 +167,5 @@ def _length(comparison: Comparison) -> str:
 
 
 def grouped(number: float) -> str:
-    """Format a number in full with grouped thousands, or a number below 100 with three digits."""
+    """Format a number with thousands separators, or with three significant digits below 100."""
     return f"{number:,.0f}".replace(",", " ") if number >= 100 else f"{number:.3g}"

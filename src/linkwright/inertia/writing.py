@@ -1,4 +1,4 @@
-"""Writing of computed ``<inertial>`` elements to the source files of links."""
+"""Writing of computed ``<inertial>`` elements into the source files of links."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ class Written:
 
     Attributes:
         files: the files that changed, in the order of their links.
-        links: the links whose ``<inertial>`` was written to one of them.
-        refused: link -> why it cannot be written, as a clause.
+        links: the links whose ``<inertial>`` was written to a file.
+        refused: the reason, as a clause, why a link could not be written, by link.
     """
 
     files: tuple[Path, ...]
@@ -35,11 +35,11 @@ class Written:
 
 
 def write_inertials(robot: Robot, properties: Mapping[str, MassProperties]) -> Written:
-    """Write mass properties to the source files of links, and leave everything else unchanged.
+    """Write mass properties to the source files of links, without changing any other text.
 
     Args:
         robot: the robot, read from a file, possibly through xacro.
-        properties: link -> mass properties in the link frame.
+        properties: the mass properties in the link frame, by link.
 
     Raises:
         LinkwrightError: INR201, a file cannot be written.
@@ -55,10 +55,11 @@ def write_inertials(robot: Robot, properties: Mapping[str, MassProperties]) -> W
 
 
 def write_edits(edits_of: Mapping[str, Callable[[], tuple[SourceText, list[Replacement]]]]) -> Written:
-    """Apply edits in several places, writing each file once.
+    """Apply edits of several elements, writing each file once.
 
     Args:
-        edits_of: name -> a function that returns a text as it was read, and its edits; may raise `NotWritableError`.
+        edits_of: for each name, a function that returns a text as it was read and its edits; it may raise
+            `NotWritableError`.
 
     Returns:
         The result, with these names in place of links.
@@ -91,9 +92,10 @@ def _place(link: Link) -> tuple[str, int]:
 
 
 def _current(file: str, text: str) -> str:
-    """Return the current text of a file, with its byte order mark.
+    """Return the current text of a file, including any byte order mark.
 
-    Refuses a file that has changed.
+    Raises:
+        NotWritableError: the file has changed since `text` was read, cannot be read, or is not UTF-8.
     """
     try:
         now = read_bytes(file).decode("utf-8")

@@ -1,4 +1,4 @@
-"""Forward kinematics of a robot, for one or many configurations."""
+"""Forward kinematics of a robot for one or many configurations, and kinematics of drives."""
 
 from linkwright.kinematics.tree import KinematicTree, UnknownNameError
 

@@ -15,7 +15,7 @@ _QUARTER_TURN = pi / 2.0
 
 @dataclass(frozen=True, slots=True)
 class DifferentialDrive:
-    """Two wheels, or two sides of wheels, on one axis.
+    """A drive of two wheels, or two sides of wheels, on one axis.
 
     Attributes:
         separation: the distance between the wheels in m.
@@ -32,14 +32,14 @@ class DifferentialDrive:
         return (forward - aside) / self.left_radius, (forward + aside) / self.right_radius
 
     def motion(self, left: float, right: float) -> tuple[float, float]:
-        """Return the linear velocity forward in m/s and the angular velocity in rad/s for two wheel speeds."""
+        """Return the forward velocity (m/s) and angular velocity (rad/s) for two wheel speeds."""
         left, right = left * self.left_radius, right * self.right_radius
         return (left + right) / 2.0, (right - left) / self.separation
 
 
 @dataclass(frozen=True, slots=True)
 class MecanumDrive:
-    """Four wheels with rollers at 45 degrees, which form an X when seen from above.
+    """A drive of four wheels with rollers at 45 degrees, which form an X when seen from above.
 
     Attributes:
         arm: half the sum of the wheelbase and the track, in m.
@@ -50,7 +50,10 @@ class MecanumDrive:
     radius: float
 
     def wheel_speeds(self, forward: float, sideways: float, turning: float) -> tuple[float, float, float, float]:
-        """Return the angular velocities of the front left, front right, rear left and rear right wheel in rad/s."""
+        """Return the angular velocities of the wheels in rad/s.
+
+        The order is front left, front right, rear left, rear right.
+        """
         aside = turning * self.arm
         return (
             (forward - sideways - aside) / self.radius,
@@ -62,7 +65,7 @@ class MecanumDrive:
     def motion(
         self, front_left: float, front_right: float, rear_left: float, rear_right: float
     ) -> tuple[float, float, float]:
-        """Return the velocity forward and to the left in m/s, and about z in rad/s, for four wheel speeds.
+        """Return the velocities forward, to the left (m/s) and about z (rad/s) for wheel speeds.
 
         If no motion without sliding has these speeds, the result is the nearest motion (least squares).
         """
@@ -76,7 +79,7 @@ class MecanumDrive:
 
 @dataclass(frozen=True, slots=True)
 class CarDrive:
-    """A driven axle and a steered axle; the robot's frame is in the middle of the driven one.
+    """A drive with a driven and a steered axle, whose frame is in the middle of the driven axle.
 
     Attributes:
         wheelbase: the distance between the axles in m, positive.
@@ -91,21 +94,21 @@ class CarDrive:
     radius: float
 
     def steering_angle(self, forward: float, turning: float) -> float:
-        """Return the angle of a virtual wheel in the middle of the steered axle in rad.
-
-        The value is 0 for a robot at rest.
-        """
+        """Return the angle of a virtual wheel in the middle of the steered axle in rad; 0 at rest."""
         return 0.0 if forward == 0.0 else atan(turning * self.wheelbase / forward)
 
     def steering_angles(self, angle: float) -> tuple[float, float]:
-        """Return the angles of the left and the right wheel in rad for the angle of a virtual wheel in the middle."""
+        """Return the angles of the left and right steered wheel in rad.
+
+        `angle` is that of a virtual wheel in the middle.
+        """
         slope = tan(angle)
         return ackermann_angles(slope, self.steering_track * slope / self.wheelbase)
 
     def middle_angle(self, left: float, right: float) -> float:
-        """Return the angle of a virtual wheel in the middle, in rad.
+        """Return the angle of a virtual wheel in the middle, in rad, for the angles of both wheels.
 
-        It is the mean of the middle angles that the left and right wheels correspond to.
+        The result is the mean of the angles that correspond to the left and to the right wheel.
         """
         half = self.steering_track / 2.0
         of_left = atan2(self.wheelbase * sin(left), self.wheelbase * cos(left) + half * sin(left))
@@ -113,23 +116,29 @@ class CarDrive:
         return (of_left + of_right) / 2.0
 
     def wheel_speeds(self, forward: float, angle: float) -> tuple[float, float]:
-        """Return the angular velocities of the left and right driven wheels in rad/s, at a steering angle in rad."""
+        """Return the angular velocities of the left and right driven wheel in rad/s.
+
+        `angle` is the steering angle in rad.
+        """
         speed, aside = forward / self.radius, self._aside(angle)
         return speed * (1.0 - aside), speed * (1.0 + aside)
 
     def motion(self, left: float, right: float, angle: float) -> tuple[float, float]:
-        """Return the velocity forward in m/s (the mean of both wheels), and about z in rad/s."""
+        """Return the forward velocity (m/s) and angular velocity (rad/s) for two wheel speeds.
+
+        `angle` is the steering angle in rad. The forward velocity is the mean of those of both wheels.
+        """
         aside = self._aside(angle)
         forward = (left / (1.0 - aside) + right / (1.0 + aside)) * self.radius / 2.0
         return forward, forward * tan(angle) / self.wheelbase
 
     def _aside(self, angle: float) -> float:
-        """Return how much the speed of the inner wheel differs from that of the middle, as a fraction."""
+        """Return the fraction by which the right wheel is faster, and the left one slower."""
         return self.traction_track / 2.0 * tan(angle) / self.wheelbase
 
 
 def ackermann_angles(slope: float, track: float) -> tuple[float, float]:
-    """Return the angles in rad at which the left and the right steered wheel roll about a common point.
+    """Return the angles in rad at which both steered wheels roll about a common point.
 
     Args:
         slope: the tangent of the angle of a virtual wheel in the middle; positive to the left.
@@ -140,7 +149,7 @@ def ackermann_angles(slope: float, track: float) -> tuple[float, float]:
 
 @dataclass(frozen=True, slots=True)
 class TricycleDrive:
-    """A driven and steered front wheel and two passive rear wheels.
+    """A drive with a driven and steered front wheel and two passive rear wheels.
 
     The robot's frame is in the middle of the rear axle.
 
@@ -153,9 +162,9 @@ class TricycleDrive:
     radius: float
 
     def wheel(self, forward: float, turning: float) -> tuple[float, float]:
-        """Return the angular velocity of the wheel in rad/s, and its angle in rad.
+        """Return the angular velocity of the wheel in rad/s, and its steering angle in rad.
 
-        The angle is a right angle to rotate in place.
+        To rotate in place, the angle is a right angle.
         """
         across = turning * self.wheelbase
         rim = hypot(forward, across)
@@ -164,6 +173,11 @@ class TricycleDrive:
         return copysign(rim, forward) / self.radius, atan(across / forward)
 
     def motion(self, speed: float, angle: float) -> tuple[float, float]:
-        """Return the velocity forward in m/s and about z in rad/s for the wheel's angular velocity and angle in rad."""
+        """Return the forward velocity in m/s and the angular velocity in rad/s.
+
+        Args:
+            speed: the angular velocity of the wheel, in rad/s.
+            angle: the steering angle, in rad.
+        """
         rim = speed * self.radius
         return rim * cos(angle), rim * sin(angle) / self.wheelbase

@@ -11,7 +11,9 @@ UNBOUNDED: Bounds = (-inf, inf)
 
 
 class SpeedLimiter:
-    """Limits a velocity: first its second derivative, then its first derivative, then its value.
+    """A limiter of a velocity and its first two derivatives.
+
+    The second derivative is limited first, then the first derivative, then the velocity itself.
 
     Args:
         velocity: the limits in m/s or rad/s.
@@ -47,11 +49,11 @@ class SpeedLimiter:
         self.restart()
 
     def restart(self) -> None:
-        """Restart at zero."""
+        """Reset the velocity and the acceleration to zero."""
         self.speed = self._before = 0.0
 
     def follow(self, wanted: float, seconds: float) -> float:
-        """Return the limited velocity, the given seconds after the previous call."""
+        """Return the next velocity towards a wanted one, `seconds` after the last call."""
         speed = self.speed
         change, changed = wanted - speed, speed - self._before
         if not self._brakes_freely or (change - changed) * change > 0.0:

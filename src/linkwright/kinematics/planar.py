@@ -1,4 +1,4 @@
-"""Poses in a plane, and their motions."""
+"""Poses in a plane, which are changed by motions."""
 
 from __future__ import annotations
 
@@ -13,16 +13,17 @@ _STRAIGHT = 1e-6
 
 @dataclass(slots=True)
 class PlanarPose:
-    """A position in a plane in m, and a heading in rad."""
+    """A pose in a plane: a position in m and a heading in rad."""
 
     x: float = 0.0
     y: float = 0.0
     yaw: float = 0.0
 
     def advance(self, forward: float, sideways: float, turn: float) -> None:
-        """Move straight, forward and to the left in m, at the middle heading of a rotation by an angle in rad.
+        """Move straight, at the middle heading of a rotation by an angle in rad.
 
-        Source: the second-order Runge-Kutta method, as in gazebo_ros_diff_drive.
+        `forward` and `sideways` (to the left) are distances in m. Source: the second-order Runge-Kutta method, as in
+        gazebo_ros_diff_drive.
         """
         middle = self.yaw + turn / 2.0
         self.x += forward * cos(middle) - sideways * sin(middle)
@@ -30,7 +31,7 @@ class PlanarPose:
         self.yaw += turn
 
     def follow_arc(self, forward: float, sideways: float, turn: float) -> None:
-        """Move on an arc: forward and to the left in m while rotating by an angle in rad.
+        """Move forward and to the left, by distances in m, while rotating by an angle in rad.
 
         The path is a circular arc, without integration error. Source: diff_drive_controller, which does so only for
         forward motion.
@@ -46,6 +47,6 @@ class PlanarPose:
 
     @property
     def transform(self) -> Transform:
-        """The pose in space."""
+        """The pose in space, at height 0."""
         half = self.yaw / 2.0
         return self.x, self.y, 0.0, 0.0, 0.0, sin(half), cos(half)

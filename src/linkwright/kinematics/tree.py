@@ -1,4 +1,4 @@
-"""Forward kinematics of a whole robot.
+"""Forward kinematics of all links of a robot.
 
 Links joined by fixed joints move as one. So only moving joints matter: each carries a body, whose own frame is at the
 joint with z along the joint's axis. Then a joint rotates its body about z or translates it along z, whatever its axis:
@@ -33,7 +33,7 @@ MOVING = (*_TURNING, "prismatic")
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """A robot laid out for computing: its bodies in the order of their depth, and its links.
+    """The bodies of a robot in the order of their depth, and its links, in arrays.
 
     Attributes:
         link_names: every link that is connected to the root, parents before children.
@@ -41,9 +41,9 @@ class Layout:
         parents: the index of each body's parent body; 0 is the root's body; shape (bodies,).
         depths: the number of moving joints above each body; shape (bodies,).
         slides: whether the body translates instead of rotating; shape (bodies,).
-        mounts: from the parent body's frame to the joint, whose axis is along z; shape (bodies, 4, 4).
+        mounts: the frame of the joint, with its axis along z, in the parent body's frame; shape (bodies, 4, 4).
         link_bodies: the body of each link; shape (links,).
-        offsets: from the body's frame to the link's; shape (links, 4, 4).
+        offsets: the frame of each link in its body's frame; shape (links, 4, 4).
     """
 
     link_names: tuple[str, ...]
@@ -64,12 +64,13 @@ def lay_out(robot: Robot) -> Layout:
     offsets = [np.eye(4)]
     body_joints: list[Joint | None] = [None]
     parents, depths, mounts = [0], [0], [np.eye(4)]
-    # A queue: parents are processed before children and, level by level, bodies in the order of their depth.
+    # A queue ensures that parents are processed before children and, level by level, bodies in the order of their
+    # depth.
     at = 0
     while at < len(link_names):
         for joint in children[link_names[at]]:
             if above[joint.child] is not joint:
-                continue  # a second parent, which urdfdom ignores
+                continue  # Like urdfdom, ignore a second parent.
             body = link_bodies[at]
             to_joint = offsets[at] @ matrix_from_pose(row_from_pose(joint.origin))
             align = _align_z(joint.axis) if joint.type in MOVING else None
@@ -102,10 +103,7 @@ def lay_out(robot: Robot) -> Layout:
 
 
 def _align_z(axis: tuple[float, float, float]) -> Array | None:
-    """Return a homogeneous matrix that rotates z to the axis.
-
-    Returns None for a zero axis, about which nothing moves.
-    """
+    """Return a homogeneous matrix that rotates z to the axis, or None for a zero axis."""
     length = np.linalg.norm(axis)
     if not length > 0:
         return None
@@ -120,7 +118,10 @@ def _align_z(axis: tuple[float, float, float]) -> Array | None:
 
 @dataclass(frozen=True, slots=True)
 class Following:
-    """A mimic joint: position = factor * position of `leader` + offset; a free joint is its own leader."""
+    """The relation of a joint to its leader: position = factor * position of `leader` + offset.
+
+    A joint that mimics no other is its own leader.
+    """
 
     leader: str
     factor: float = 1.0
@@ -135,8 +136,9 @@ def resolve_mimics(robot: Robot, moving: Collection[str]) -> tuple[tuple[str, ..
         moving: the names of the joints that move.
 
     Returns:
-        The moving joints that have their own position, in the order of the file, and what each moving joint follows. A
-        joint whose chain ends in a cycle or at a joint that does not exist moves independently.
+        The moving joints that have their own position, in the order of the file; and the relation of each moving joint
+        to its leader, by name. A joint whose chain ends in a cycle or at a joint that does not exist moves
+        independently.
     """
     following: dict[str, Following] = {}
     for name in robot.joints:
@@ -162,12 +164,12 @@ _BLOCK = 384
 
 
 class OneConfiguration:
-    """Computes link frames for one configuration."""
+    """The computation of link frames for one configuration."""
 
     def __init__(self, layout: Layout) -> None:
         count = len(layout.parents)
         mounts = layout.mounts[1:]
-        # A body in its parent is 1 * A + cos(q) * B + sin(q) * C + q * D, entry by entry.
+        # The frame of a body in its parent is 1 * A + cos(q) * B + sin(q) * C + q * D, entry by entry.
         terms = np.zeros((count - 1, 4, 4, 4))
         turns, slides = ~layout.slides[1:], layout.slides[1:]
         terms[turns, 0, :, 2:] = mounts[turns, :, 2:]
@@ -182,7 +184,10 @@ class OneConfiguration:
         self._offsets = layout.offsets
 
     def frames(self, positions: Array) -> Array:
-        """Return link frames in the root, shape (links, 4, 4), for positions of shape (bodies - 1,)."""
+        """Return the links' frames in the root, shape (links, 4, 4).
+
+        `positions` has shape (bodies - 1,).
+        """
         count = len(positions)
         factors = np.empty((4, count))
         factors[0] = 1.0
@@ -200,7 +205,7 @@ class OneConfiguration:
 
 
 class ManyConfigurations:
-    """Computes link frames for many configurations."""
+    """The computation of link frames for many configurations."""
 
     def __init__(self, layout: Layout) -> None:
         self._levels = [_Level(layout, depth) for depth in range(1, int(layout.depths.max()) + 1)]
@@ -209,7 +214,10 @@ class ManyConfigurations:
         self._offsets_transposed = np.ascontiguousarray(layout.offsets.transpose(0, 2, 1))
 
     def frames(self, positions: Array) -> Array:
-        """Return link frames in the root, shape (n, links, 4, 4), for positions of shape (n, bodies - 1)."""
+        """Return the links' frames in the root, shape (n, links, 4, 4).
+
+        `positions` has shape (n, bodies - 1).
+        """
         count, links = len(positions), len(self._link_bodies)
         frames = np.empty((count, links, 4, 4))
         frames[:, :, 3] = _IDENTITY[3]
@@ -230,10 +238,7 @@ class ManyConfigurations:
 
 
 class _Level:
-    """The bodies with the same number of moving joints above them.
-
-    Rotating bodies precede translating ones.
-    """
+    """The bodies with the same number of moving joints above them, rotating bodies first."""
 
     def __init__(self, layout: Layout, depth: int) -> None:
         members = np.flatnonzero(layout.depths == depth)
@@ -264,9 +269,10 @@ class _Level:
 
 
 def _doubling_jumps(parents: Indices, depths: Indices) -> list[tuple[int, Indices]]:
-    """Return, for each step, the first body that is deep enough, and the ancestors of this and all later bodies.
+    """Return the steps in which frames are composed along doubling paths.
 
-    The ancestors are 1, 2, 4, ... bodies up, excluding the root's body, whose frame is the identity.
+    Each step consists of the first body that is deep enough, and the ancestors of this and all later bodies. The
+    ancestors are 1, 2, 4, ... bodies up, excluding the root's body, whose frame is the identity.
     """
     jumps = []
     jump = parents
@@ -296,7 +302,7 @@ class UnknownNameError(LinkwrightError):
 
 
 class KinematicTree:
-    """The kinematic tree of a robot: link poses for joint positions.
+    """The kinematic tree of a robot, which computes link frames from joint positions.
 
     Revolute, continuous and prismatic joints move. A mimic joint follows the joint at the end of its chain of mimics;
     if that chain ends in a cycle or at a joint that does not exist, the joint moves independently. A planar joint does
@@ -306,7 +312,7 @@ class KinematicTree:
 
     Attributes:
         joint_names: the joints that have a position, in the order of the file; mimic joints have none.
-        link_names: parents before children, the root first.
+        link_names: the links, parents before children, the root first.
     """
 
     def __init__(self, robot: Robot) -> None:
@@ -334,8 +340,8 @@ class KinematicTree:
         """Return the frames of all links in the root link's frame.
 
         Args:
-            positions: in rad or m, shape (joints,) or (..., joints) in the order of `joint_names`; or a mapping as for
-                `positions`.
+            positions: in rad or m, shape (joints,) or (..., joints) in the order of `joint_names`; or a mapping from
+                names to positions, in which missing joints have position 0.
 
         Returns:
             Homogeneous matrices, shape (links, 4, 4) or (..., links, 4, 4) in the order of `link_names`, float64.
@@ -357,7 +363,7 @@ class KinematicTree:
         return self._many.frames(flat).reshape(*shape, len(self.link_names), 4, 4)
 
     def positions(self, by_name: Mapping[str, float], default: float = 0.0) -> Array:
-        """Return positions in the order of `joint_names` from positions by name.
+        """Convert positions by joint name to an array in the order of `joint_names`.
 
         Joints without a given position get the default.
 
@@ -384,16 +390,13 @@ class KinematicTree:
             raise UnknownNameError("KIN103", "link", name, self.link_names) from None
 
     def _body_positions(self, positions: Array) -> Array:
-        """Return the positions of the bodies' joints, mimic joints included.
-
-        The shape is (..., bodies - 1).
-        """
+        """Return the positions of all moving joints, including mimics, of shape (..., bodies - 1)."""
         if self._plain:
             return positions.take(self._sources, axis=-1)
         if not len(self.joint_names):
             positions = np.zeros((*positions.shape[:-1], 1))
         followed = positions.take(np.maximum(self._sources, 0), axis=-1)
-        followed[..., self._sources < 0] = 0.0  # mimic joints of a joint that does not move
+        followed[..., self._sources < 0] = 0.0  # Leaders that do not move stay at 0.
         followed *= self._factors
         followed += self._offsets
         return followed

@@ -16,6 +16,7 @@ class NameKind(Enum):
     MACRO = "macro"
     PROPERTY = "property"
     ARGUMENT = "argument"
+    PARAMETER = "parameter"
     LINK = "link"
     JOINT = "joint"
     MATERIAL = "material"

@@ -76,10 +76,7 @@ def _error_of(argument: DeclareLaunchArgument, given: Mapping[str, str]) -> Sequ
 
 
 def _misspelt(name: str, undeclared: Sequence[str], error: Diagnostic) -> Diagnostic:
-    """Return the error for a missing argument.
-
-    Its hint names a given argument with a similar name.
-    """
+    """Add a hint to the error for a missing argument, if an undeclared argument has a similar name."""
     near = nearest(name, undeclared, limit=1)
     return (
         error.with_changes(hint=phrase("'{near}' is given; did you mean '{name}'?", near=near[0], name=name))
@@ -101,9 +98,9 @@ def _undeclared(name: str, declared: Sequence[str]) -> Diagnostic:
 
 
 def argument_listing(description: LaunchDescription) -> str:
-    """Return the output of ``ros2 launch --show-args``.
+    """Return the text that ``ros2 launch --show-args`` prints.
 
-    It has the names, descriptions and defaults of the arguments.
+    The text lists the names, descriptions and defaults of the declared arguments.
     """
     lines = ["Arguments (pass arguments as '<name>:=<value>'):"]
     declared = description.get_launch_arguments()

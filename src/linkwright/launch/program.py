@@ -1,4 +1,4 @@
-"""Runs a single executable of a package, without a launch file."""
+"""Runs a single executable of a package without a launch file."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ class Program:
     """An executable that is ready to run.
 
     Attributes:
-        command: the words of the command line.
-        environment: the environment that the executable needs.
-        is_ours: whether it is a node that comes with Linkwright.
+        command: the command as a list of arguments.
+        environment: the environment in which to run the executable.
+        is_ours: whether the executable is a node that comes with Linkwright.
     """
 
     command: list[str]
@@ -35,7 +35,7 @@ class Program:
 
 
 def find_program(finder: PackageFinder, package: str, executable: str) -> Program:
-    """Find an executable of a package, and return it ready to run.
+    """Return an executable of a package, ready to run.
 
     Raises:
         LinkwrightError: LAUNCH131, there is no such package or executable.
@@ -46,10 +46,10 @@ def find_program(finder: PackageFinder, package: str, executable: str) -> Progra
 
 
 def run_viewer(arguments: Sequence[str], options: LaunchOptions | None = None) -> int:
-    """Run the viewer in place of RViz, until the user ends it.
+    """Run the viewer in place of RViz until the user ends it.
 
     Args:
-        arguments: the command line of ``rviz2``.
+        arguments: the command-line arguments of ``rviz2``.
         options: the options of the viewer's page.
 
     Returns:

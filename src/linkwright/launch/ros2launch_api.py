@@ -30,7 +30,7 @@ class MultipleLaunchFilesError(Exception):
 
 
 def get_share_file_path_from_package(*, package_name: str, file_name: str) -> str:
-    """Return the path of a file, which may be anywhere below the share folder of a package.
+    """Return the path of a file in the share folder of a package or in one of its subfolders.
 
     Raises:
         PackageNotFoundError: PKG101, there is no such package.
@@ -55,12 +55,14 @@ def get_launch_file_paths(*, path: str) -> list[str]:
 
 
 def is_launch_file(path: str) -> bool:
-    """Return whether a path is the path of a launch file."""
+    """Return whether a path names an existing file with the name of a launch file."""
     return is_launch_file_name(str(path)) and Path(path).is_file()
 
 
 def parse_launch_arguments(launch_arguments: Sequence[str]) -> list[tuple[str, str]]:
-    """Parse arguments ``name:=value`` into pairs; the last value of a repeated name wins.
+    """Parse arguments ``name:=value`` into pairs.
+
+    The last value of a repeated name wins.
 
     Raises:
         RuntimeError: an argument is malformed.
@@ -76,7 +78,7 @@ def parse_launch_arguments(launch_arguments: Sequence[str]) -> list[tuple[str, s
 
 
 def print_a_launch_file(*, launch_file_path: str) -> None:
-    """Print the contents of a launch file."""
+    """Print the entities of a launch file as a tree."""
     print(format_launch_description(load_launch_file(Path(launch_file_path))))
 
 

@@ -35,13 +35,13 @@ class LaunchOptions:
         open_browser: whether to open the page in the user's browser.
         isolate: whether Linkwright's own nodes run in separate processes.
         debug: whether to log details.
-        noninteractive: whether there is no terminal, which would also send signals to the processes.
+        noninteractive: whether there is no terminal, so that Ctrl-C does not reach the processes directly.
         prefix: a prefix for the command lines of processes.
         prefix_filter: a regular expression for the names of the programs that get the prefix.
-        foxglove: a port for Foxglove and Lichtblick to connect to; None to open no port.
+        foxglove: the port to which Foxglove and Lichtblick can connect; None to open no port.
         skip_missing: whether to skip parts whose package, program or file is missing.
         command_to_skip_missing: the command that launches with `skip_missing`, for the hint about missing parts.
-        network: whether the nodes of this process join the ROS 2 network, where other programs see them.
+        network: whether the nodes of this process join the ROS 2 network, so that other programs can discover them.
         history: the memory in bytes for the viewer's history of the last minutes; 0 for no history.
     """
 
@@ -83,7 +83,7 @@ class LaunchOptions:
 def run_launch(
     target: LaunchTarget, arguments: Mapping[str, str] | None = None, options: LaunchOptions | None = None
 ) -> int:
-    """Run a launch file until everything in it has ended or the user ends it.
+    """Run a launch file until all its processes and nodes have ended or the user ends it.
 
     The modules that launch files import must be available: see `linkwright.standins.activate`.
 
@@ -121,7 +121,7 @@ def run_launch(
 
 
 def show_arguments(target: LaunchTarget) -> str:
-    """Return the output of ``--show-args`` for a launch file.
+    """Return the text of ``--show-args`` for a launch file.
 
     Raises:
         LinkwrightError: the errors in the target or the launch file.
@@ -130,7 +130,7 @@ def show_arguments(target: LaunchTarget) -> str:
 
 
 def print_description(target: LaunchTarget) -> str:
-    """Return the output of ``--print`` for a launch file: the tree of its entities.
+    """Return the text of ``--print`` for a launch file: the tree of its entities.
 
     Raises:
         LinkwrightError: the errors in the target or the launch file.
@@ -141,10 +141,7 @@ def print_description(target: LaunchTarget) -> str:
 
 
 def _read(target: LaunchTarget, describe: Callable[[LaunchDescription], str]) -> str:
-    """Read a launch file without running it, and describe its description.
-
-    Return the result of `describe`.
-    """
+    """Read a launch file without running it, and return the result of `describe` for its description."""
     finder = target.finder()
     with own_environment(finder):
         return describe(load_launch_file(target.resolve(finder)))
@@ -157,7 +154,14 @@ def run_description(
     options: LaunchOptions,
     title: str,
 ) -> int:
-    """Run a launch description, which `load` returns with its initial locals.
+    """Run a launch description until the launch ends.
+
+    Args:
+        load: returns the description and the initial locals of the context.
+        configurations: name -> value of the launch configurations.
+        finder: the package finder.
+        options: the options of the launch.
+        title: the title of the launch.
 
     Returns:
         The exit status, see `run_launch`.

@@ -1,4 +1,4 @@
-"""The launch file to run, given by a path, or by a package and the name of a file in it."""
+"""The launch file to run, given by a path, or by a package and a file name."""
 
 from __future__ import annotations
 
@@ -18,7 +18,8 @@ class LaunchTarget:
     """A launch file as the user names it.
 
     Attributes:
-        file: the path; with a package, the name of the file or its path below the package's share folder.
+        file: the path of the file. If a package is given: the file's name, or its path below the package's share
+            folder.
         package: the package, or None.
     """
 
@@ -26,10 +27,7 @@ class LaunchTarget:
     package: str | None = None
 
     def finder(self) -> PackageFinder:
-        """Return the package finder of the launch.
-
-        It starts at the file's folder and the current folder.
-        """
+        """Return a package finder that starts in the launch file's folder and the current folder."""
         if self.package is None:
             return PackageFinder(start=[Path(self.file).absolute().parent, Path.cwd()])
         return PackageFinder()
@@ -38,7 +36,7 @@ class LaunchTarget:
         """Return the absolute path of the launch file.
 
         Raises:
-            LinkwrightError: PKG101, the package is unknown; LAUNCH101, the package has no such file, or several.
+            LinkwrightError: PKG101, there is no such package; LAUNCH101, the package has no such file, or several.
         """
         if self.package is None:
             return Path(self.file).absolute()
@@ -79,14 +77,20 @@ class LaunchTarget:
 
 
 def parse_launch_words(words: Sequence[str]) -> tuple[LaunchTarget, dict[str, str]]:
-    """Parse the words of ``launch PACKAGE FILE [name:=value ...]`` or ``launch PATH [name:=value ...]``.
+    """Parse the command line ``launch PACKAGE FILE [name:=value ...]`` or ``launch PATH [name:=value ...]``.
+
+    Args:
+        words: the arguments after ``launch``.
+
+    Returns:
+        The launch file, and the values of the launch arguments by name.
 
     Raises:
         LinkwrightError: LAUNCH110, no launch file is named; LAUNCH111, arguments are malformed.
     """
     split = next((index for index, word in enumerate(words) if ":=" in word), len(words))
     split = min(split, 2)
-    if split == 2 and _is_file(words[0]):  # a path, followed by a word that was probably meant as an argument
+    if split == 2 and _is_file(words[0]):  # the second word is probably a malformed launch argument
         split = 1
     named, rest = words[:split], words[split:]
     arguments = parse_arguments(rest)

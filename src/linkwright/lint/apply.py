@@ -28,8 +28,8 @@ class FixResult:
     """The result of fixing a file.
 
     Attributes:
-        texts: path -> new text of every file that changes.
-        counts: code -> the number of findings that were fixed.
+        texts: the new text of every file that changes, by path.
+        counts: the number of findings that were fixed, by code.
     """
 
     texts: dict[str, str] = field(default_factory=dict)
@@ -43,15 +43,16 @@ class FixResult:
 def fix_file(path: Path, check: Check, *, unsafe: bool = False, write: bool = True) -> FixResult:
     """Apply all available fixes to a description.
 
-    Only files of the description's package are changed or, if it is not in a package, files in and below its folder. A
-    pass applies all fixes that do not overlap; the next pass checks the result.
+    Each pass applies the fixes that do not overlap, then the next pass checks the result. Fixes are limited to files of
+    the description's package or, if the description is not in a package, to files in and below its folder.
 
     Args:
         path: the path of the description.
-        check: the function that checks it; called with the new text of `path` if nothing is written, else with None.
-        unsafe: whether to apply fixes that may change the meaning, too.
-        write: whether to change the files; otherwise only the result contains the changes, and an included file is
-            fixed in one pass.
+        check: the function that checks the description. If nothing is written, the argument is the new text of `path`
+            (None in the first pass), else None.
+        unsafe: whether to also apply fixes that may change the meaning.
+        write: whether to write the files. If not, the changes are only in the result, and each included file is fixed
+            in a single pass.
 
     Raises:
         LinkwrightError: LINT201 if a file cannot be written.
@@ -75,7 +76,9 @@ def fix_file(path: Path, check: Check, *, unsafe: bool = False, write: bool = Tr
 
 
 def write_text(path: Path, text: str, encoding: str = "utf-8") -> None:
-    """Write a file atomically, keeping its permissions and byte order mark; a link stays a link.
+    """Write a file atomically, keeping its permissions and byte order mark.
+
+    A symbolic link is kept; its target is written.
 
     Args:
         path: the path of the file.
@@ -122,7 +125,11 @@ def _may_change(fix: Fix, home: Path, done: set[str]) -> bool:
 
 
 def _apply(fixes: Iterable[tuple[str, Fix]], result: FixResult, texts: Mapping[str, str]) -> dict[str, str]:
-    """Return the new texts of the files that fixes change; of overlapping fixes, the first is applied."""
+    """Return the new text of each file that the fixes change, by path.
+
+    Of overlapping fixes, the first is applied. The result is empty if one of the files cannot be read. A file whose new
+    text would not be well-formed XML is left out.
+    """
     taken: dict[str, list[Edit]] = {}
     counts: dict[str, int] = {}
     before: dict[str, str | None] = {}
@@ -156,7 +163,7 @@ def _edited(text: str, edits: Iterable[Edit]) -> str:
 
 
 def _text(file: str) -> str | None:
-    """Return the text of a file on disk, without a byte order mark; None if it is not UTF-8."""
+    """Return the text of a file without a byte order mark, or None if it is not readable UTF-8."""
     try:
         return read_bytes(file).removeprefix(_MARK).decode("utf-8")
     except (LinkwrightError, UnicodeDecodeError):
@@ -178,6 +185,6 @@ def _diff(file: str, text: str) -> str:
 
 
 def unified(name: str, before: str, after: str) -> str:
-    """Return the changes of a file as a unified diff, as ``patch -p0`` takes it."""
+    """Return the changes of a file as a unified diff that ``patch -p0`` accepts."""
     lines = unified_diff(before.splitlines(keepends=True), after.splitlines(keepends=True), name, name)
     return "".join(line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n" for line in lines)

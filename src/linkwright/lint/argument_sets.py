@@ -51,8 +51,8 @@ class _Run:
     Attributes:
         given: the values of the arguments.
         checked: the result.
-        errors: the errors of the expansion and of the reader.
-        hanging: the errors among them that may be due to arguments whose values only the caller knows.
+        errors: the keys of the errors of the expansion and of the reader.
+        hanging: the subset of `errors` that may be due to arguments whose values only the caller knows.
     """
 
     given: ArgumentSet
@@ -62,12 +62,12 @@ class _Run:
 
     @property
     def messages_of_errors(self) -> frozenset[tuple[Key, str]]:
-        """The errors with their messages."""
+        """The key and the message of each error."""
         places = ((_place(diagnostic), str(diagnostic.message)) for diagnostic in self.checked.diagnostics)
         return frozenset(place for place in places if place[0] in self.errors)
 
     def is_fine(self, common: frozenset[Key]) -> bool:
-        """Return whether all runs have this run's errors, and none depends on unknown values."""
+        """Return whether all errors are common ones and none may be due to an unknown value."""
         return self.errors <= common and not self.hanging
 
 
@@ -78,10 +78,10 @@ class SetCheck:
     Args:
         path: the file.
         finder: the finder of packages.
-        examine: the function that checks the file with some values. It expands the file if its flag is True; if the
-            flag is None, the file decides.
+        examine: the function that checks the file with given values. Its flag says whether to expand the file; None
+            decides by the file.
         settings: the settings for the file.
-        is_named: whether the user named the file, so that a failure to expand it without arguments is reported.
+        is_named: whether the user named the file. Then, a failure to expand it without arguments is reported.
     """
 
     path: Path
@@ -93,11 +93,14 @@ class SetCheck:
     _is_expanded: bool = field(default=False, init=False)
 
     def with_configured(self, sets: Sequence[Mapping[str, str]]) -> Checked:
-        """Return the result for the argument sets of a configuration, which replace the sets of all callers."""
+        """Return the merged result for configured argument sets; those of callers are ignored."""
         return self._merged([self._run(ArgumentSet(values)) for values in sets], ())
 
     def with_callers(self, find_sets: Callable[[], Sequence[ArgumentSet]]) -> Checked:
-        """Return the result for the defaults and the callers' sets; `find_sets` is called only if needed."""
+        """Return the merged result for the defaults and for the argument sets of callers.
+
+        `find_sets` returns the callers' sets and is called only if they are needed.
+        """
         default = self._run(_NO_VALUES)
         if _has_expressions(default.checked):
             default = self._expanded(find_sets()) or default
@@ -133,7 +136,10 @@ class SetCheck:
         return self._merged(kept, self._needs_arguments_finding(kept[0], default, common, sets))
 
     def _expanded(self, sets: Sequence[ArgumentSet]) -> _Run | None:
-        """Return the run of a file that launch files pass to xacro; None if xacro would fail."""
+        """Return the default run of a file that launch files pass to xacro, now with expansion.
+
+        Return None if there are no argument sets, or if the defaults and all sets cause errors.
+        """
         if not sets:
             return None
         self._xacro = True
@@ -144,8 +150,7 @@ class SetCheck:
         return default
 
     def _run(self, given: ArgumentSet) -> _Run:
-        # A file that was expanded once is expanded with other arguments, too, without testing again whether it is
-        # xacro.
+        # Once a file was expanded with some arguments, do not test again whether it is xacro.
         checked = self.examine(given.values, True if given.values and self._is_expanded else self._xacro)
         self._is_expanded = checked.subject is not None and checked.subject.expansion is not None
         if given.values:  # a caller may set arguments that only other descriptions declare
@@ -166,7 +171,10 @@ class SetCheck:
     # --- findings ---------------------------------------------------------------------------------------------
 
     def _merged(self, runs: Sequence[_Run], more: Iterable[Diagnostic]) -> Checked:
-        """Merge the findings of several runs, each once, with the robot of the first run that has one."""
+        """Merge the findings of several runs without duplicates.
+
+        The robot is that of the first run that has one.
+        """
         collected: dict[Key, tuple[Diagnostic, list[_Run]]] = {}
         for run in runs:
             for key, each in _numbered(run.checked.diagnostics):
@@ -175,7 +183,7 @@ class SetCheck:
         copied = {name for run in runs if run.checked.subject for name in run.checked.subject.once(placeholders)}
         for diagnostic, having in collected.values():
             if diagnostic.code in LEFT_TO_PLACEHOLDERS and as_phrase(diagnostic.message).arguments["name"] in copied:
-                continue  # the placeholder rule reports these, in a run with other values
+                continue  # the placeholder rule reports these findings, in a run with other values
             if len(having) == len(runs):
                 found.append(diagnostic)
             elif not _holds_for_all_sets(diagnostic):
@@ -200,7 +208,10 @@ class SetCheck:
         yield _needs_arguments(default.checked, names, tuple(notes))
 
     def _required_arguments(self, values: Mapping[str, str], common: frozenset[Key]) -> list[str]:
-        """Return the arguments that are needed for a robot, found by leaving each argument out in turn."""
+        """Return the names of the arguments without which the expansion fails.
+
+        They are found by leaving out each argument in turn.
+        """
         kept = dict(values)
         for name in values:
             fewer = {each: value for each, value in kept.items() if each != name}
@@ -220,7 +231,10 @@ class SetCheck:
     def _result_for_unknown_values(
         self, default: _Run, runs: Sequence[_Run], common: frozenset[Key], sets: Sequence[ArgumentSet]
     ) -> Checked:
-        """Return the result with the defaults for callers that give unknown values."""
+        """Return the result of the default run for callers whose values are known only at runtime.
+
+        Errors that may be due to such values are left out.
+        """
         names = _runtime_arguments(sets)
         if not names:
             return self._without_values(default, sets)
@@ -228,9 +242,10 @@ class SetCheck:
         return self._only(default, lambda error: _place(error) in certain, names, _runtime_value_note(sets))
 
     def _without_values(self, default: _Run, sets: Sequence[ArgumentSet]) -> Checked:
-        """Return the result for callers without known values.
+        """Return the result of the default run for callers without known values.
 
-        Such callers set the arguments that lack a declaration or value.
+        Such callers are assumed to set the arguments that lack a declaration or a value. Errors that depend on these
+        arguments are left out.
         """
         asked = [name for diagnostic in default.checked.diagnostics if (name := undeclared_argument(diagnostic))]
         if asked:
@@ -251,7 +266,7 @@ class SetCheck:
         return self._only(default, lambda error: _place(error) not in hanging, list(changed), _runtime_value_note(sets))
 
     def _changed(self, run: _Run, values: Mapping[str, str]) -> frozenset[Key]:
-        """Return the errors of a run that other values of some arguments change or remove."""
+        """Return the keys of the errors that change or disappear with other values."""
         other = self._run(ArgumentSet({**run.given.values, **values})).messages_of_errors
         return frozenset(place for place, message in run.messages_of_errors if (place, message) not in other)
 
@@ -277,7 +292,7 @@ def _sources(checked: Checked) -> Sequence[Document]:
 
 
 def _has_expressions(checked: Checked) -> bool:
-    """Return whether a file that is read without expansion has xacro expressions."""
+    """Return whether a file was read without expansion although its text has xacro expressions."""
     if checked.subject is None or checked.subject.expansion is not None:
         return False
     texts = [document.source.text for document in _sources(checked) if document.source is not None]
@@ -285,7 +300,10 @@ def _has_expressions(checked: Checked) -> bool:
 
 
 def _takes_arguments(checked: Checked) -> bool:
-    """Return whether arguments can change a description: it must be expanded and declare arguments."""
+    """Return whether arguments might change a description, because its sources contain ``arg``.
+
+    A file without a subject takes arguments if its suffix is ``.xacro``.
+    """
     if checked.subject is None:
         return checked.path.suffix == ".xacro"
     sources = checked.subject.sources.values()
@@ -297,7 +315,7 @@ def _place(diagnostic: Diagnostic) -> Key:
 
 
 def _numbered(diagnostics: Iterable[Diagnostic]) -> Iterator[tuple[Key, Diagnostic]]:
-    """Yield diagnostics, each with a key of code, place and index among the findings there.
+    """Yield each diagnostic with a key: code, span, and index among the findings at this span.
 
     The key leaves the message out, since numbers and names in messages differ between sets.
     """
@@ -311,7 +329,7 @@ def _numbered(diagnostics: Iterable[Diagnostic]) -> Iterator[tuple[Key, Diagnost
 def _is_excused(run: _Run, tried: Sequence[_Run], common: frozenset[Key]) -> bool:
     """Return whether a set fails only because its values do not fit together.
 
-    Each of the values works in another set.
+    This is so if the set is mixed from several sources, or if the values that vary succeed in another run.
     """
     if run.is_fine(common) or not run.given.varied:
         return False
@@ -327,10 +345,10 @@ def _holds_for_all_sets(diagnostic: Diagnostic) -> bool:
 
 
 def _under_condition(diagnostic: Diagnostic, having: Sequence[_Run], runs: Sequence[_Run]) -> Diagnostic:
-    """Return a finding with the values under which it occurs.
+    """Return a finding with a note on the values under which it occurs.
 
-    An error becomes a warning if it needs choices that launch arguments offer: another argument may have to match the
-    offered value, such as the number of joints and the kind of arm.
+    An error becomes a warning if all runs that have it use values that a launch argument merely offers. Such a value
+    may require a matching value of another argument, such as the number of joints for the kind of arm.
     """
     notes = (*diagnostic.notes, _condition(having[0], runs))
     is_offered = diagnostic.severity is Severity.ERROR and all(run.given.is_offered for run in having)
@@ -338,7 +356,7 @@ def _under_condition(diagnostic: Diagnostic, having: Sequence[_Run], runs: Seque
 
 
 def _condition(run: _Run, runs: Sequence[_Run]) -> Note:
-    """Return a note with the values of a run under which a finding occurs that other sets do not show."""
+    """Return a note with the values of a run that differ from those of other runs."""
     values = run.given.values
     own = [name for name in values if any(other.given.values.get(name) != values[name] for other in runs)]
     if not own:
@@ -349,19 +367,22 @@ def _condition(run: _Run, runs: Sequence[_Run]) -> Note:
 
 
 def undeclared_argument(diagnostic: Diagnostic) -> str | None:
-    """Return the argument that a finding reports as undeclared, unless it may be misspelt."""
+    """Return the name of the argument that a finding reports as undeclared, or None.
+
+    The result is also None if the name may be misspelt.
+    """
     if diagnostic.code != UNDECLARED or as_phrase(diagnostic.hint or "").template.startswith("did you mean"):
         return None
     return str(as_phrase(diagnostic.message).arguments.get("name", ""))
 
 
 def _runtime_arguments(sets: Sequence[ArgumentSet]) -> list[str]:
-    """Return the arguments whose values are known only when their callers run."""
+    """Return the names of the arguments whose values are known only when their callers run."""
     return list(dict.fromkeys(name for argument_set in sets for name in argument_set.open if name))
 
 
 def _runtime_value_note(sets: Sequence[ArgumentSet]) -> tuple[Note, ...]:
-    """Return a note on a caller whose values are known only when it runs, or nothing."""
+    """Return a note on the first caller with values known only at runtime, or an empty tuple."""
     calls = [argument_set.span for argument_set in sets if argument_set.open]
     return (Note(phrase("their values are only known when this runs"), calls[0]),) if calls else ()
 

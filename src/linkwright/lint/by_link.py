@@ -1,4 +1,4 @@
-"""The findings about masses and inertias of a displayed robot, for each of its links."""
+"""The findings about masses and inertias for each link of a displayed robot."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ _RULES = "LW3"
 
 
 def inertia_findings(robot: Robot, finder: PackageFinder) -> list[tuple[str, Diagnostic]]:
-    """Return the findings of the rules about masses and inertias, each with the name of its link.
+    """Return the findings about masses and inertias, each with the name of its link.
 
-    The links of a macro that is called four times are four links here, where `linkwright check` reports one place. This
-    may take long, because meshes are read to measure the links.
+    If a macro with a link is called four times, each of the four links has its own findings, whereas `linkwright check`
+    reports the location once. The function may take long because it reads meshes to measure the links.
     """
     if robot.element is None:
         return []
@@ -41,7 +41,7 @@ def inertia_findings(robot: Robot, finder: PackageFinder) -> list[tuple[str, Dia
 
 
 def _owners(robot: Robot) -> dict[int, str]:
-    """Return the link that contains each element, by the element's identity."""
+    """Return the name of the link that contains each element, by the `id` of the element."""
     owners: dict[int, str] = {}
     for link in robot.links.values():
         if link.element is not None:

@@ -1,4 +1,4 @@
-"""Checks of files and packages with one set of settings, as `linkwright check` and editors run them."""
+"""Checks of files and packages with one set of settings, for `linkwright check` and editors."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ if TYPE_CHECKING:
 
 
 class UniqueFindings:
-    """Findings without duplicates: a file that two robots include has the same findings twice."""
+    """A collection without duplicates: a file that two robots include has its findings twice."""
 
     def __init__(self) -> None:
         self._found: dict[tuple[str, Span | None, str], Diagnostic] = {}
 
     def add(self, more: Iterable[Diagnostic]) -> None:
-        """Add the findings that are new."""
+        """Add the findings that are not in the collection yet, without their elements."""
         for diagnostic in more:
             key = (diagnostic.code, _place(diagnostic), diagnostic.message)
             if key not in self._found:
@@ -45,21 +45,24 @@ class UniqueFindings:
 
 
 def _place(diagnostic: Diagnostic) -> Span | None:
-    """Return the location of a finding, whether its file was named or included."""
+    """Return the location of a finding with the resolved path of its file.
+
+    The result is None for a finding without a location, and for missing packages.
+    """
     span = diagnostic.span
     if span is None or diagnostic.code == MISSING_PACKAGE:
-        return None  # one fix is enough, however many files name it
+        return None  # installing the package once is enough, however many files use it
     return span._replace(file=str(Path(span.file).resolve()))
 
 
 @dataclass(frozen=True, slots=True)
 class Checker:
-    """Checks files and packages; packages and the callers of descriptions are found once.
+    """Checks files and packages; searches for packages and callers of descriptions only once.
 
     Attributes:
-        values: the values of arguments; if there are none, those of the settings or of callers are used.
-        select: the rules to report instead of those of the settings; None for those of the settings.
-        ignore: the rules not to report, in addition to those of the settings.
+        values: the values of arguments; if empty, the values of the settings or of callers are used.
+        select: the rules to report instead of those that the settings select, or None.
+        ignore: the rules to ignore in addition to those that the settings ignore.
         config: the settings file to use instead of the nearest one.
         folders: the folders to search for packages, in addition to those around each file.
     """
@@ -75,7 +78,7 @@ class Checker:
     def finder(self, file: Path) -> PackageFinder:
         """Return the package finder for a file.
 
-        There is one finder per folder, and all of them share a single search of each source tree.
+        Each folder has its own finder. All finders share a single search of each source tree.
         """
         folder = file.absolute().parent
         if folder not in self._finders:
@@ -87,7 +90,7 @@ class Checker:
         return self._finders[folder]
 
     def settings(self, path: Path) -> tuple[Settings, tuple[Diagnostic, ...]]:
-        """Return the settings for a file or folder, with the findings about their text."""
+        """Return the settings for a file or folder, and the findings about the settings file."""
         settings, trouble = settings_for(path) if self.config is None else read_settings(self.config)
         select = None if self.select is None else tuple(map(canonical, self.select))
         return settings.with_words(select, tuple(map(canonical, self.ignore))), trouble
@@ -100,7 +103,7 @@ class Checker:
             paths: the files and folders that the user named.
 
         Returns:
-            All findings without duplicates, and the result of the last file; None if there is no file.
+            All findings without duplicates, and the result of the last file, or None if there is no file.
         """
         found, contexts = UniqueFindings(), Contexts()
         checked = None
@@ -120,13 +123,13 @@ class Checker:
     def check_file(
         self, file: Path, targets: Targets, overlay: Overlay | None = None, contexts: Contexts | None = None
     ) -> tuple[Checked, tuple[Diagnostic, ...]]:
-        """Check a file with the given arguments, or else with those of its callers.
+        """Check a file with the given arguments or, if none are given, with those of its callers.
 
         Args:
             file: the file.
-            targets: what is checked; its packages are searched for callers.
+            targets: the targets of the whole check, whose packages are searched for callers.
             overlay: texts that replace those of files.
-            contexts: data that checks share at one moment.
+            contexts: data that checks of the same file contents share.
 
         Returns:
             The result, and the findings about the settings.
@@ -157,15 +160,15 @@ class Checker:
     def check_package(
         self, folder: Path, overlay: Overlay | None = None, contexts: Contexts | None = None
     ) -> tuple[tuple[Diagnostic, ...], tuple[Diagnostic, ...]]:
-        """Check a package without its descriptions; return its findings, and those about the settings."""
+        """Return the findings about a package without its descriptions, and those about its settings."""
         settings, trouble = self.settings(folder)
         checked = examine_package(folder, settings, self.finder(folder / MANIFEST), overlay, contexts)
         return checked.diagnostics, trouble
 
     def _sets(self, file: Path, packages: Sequence[Path]) -> tuple[ArgumentSet, ...]:
-        """Return the values that callers give to a file's arguments.
+        """Return the argument sets that callers pass to a file.
 
-        The callers are read only once for all files.
+        The callers are read once for all files.
         """
         from linkwright.descriptions.argument_sets import ArgumentSets
 

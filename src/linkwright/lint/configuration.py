@@ -1,7 +1,7 @@
-"""Settings from ``linkwright.toml`` or ``pyproject.toml``, searched upwards from a file.
+"""Settings from the nearest ``linkwright.toml`` or ``pyproject.toml`` above a file.
 
-In ``pyproject.toml``, the settings are in ``[tool.linkwright]``. Mistakes in a configuration are reported with
-their place; the rest of the configuration still applies.
+In ``pyproject.toml``, the settings are in ``[tool.linkwright]``. Mistakes in a configuration are reported with their
+location. The rest of the configuration still applies.
 """
 
 from __future__ import annotations
@@ -54,13 +54,16 @@ _KINDS = {
 
 
 def settings_for(path: Path) -> tuple[Settings, tuple[Diagnostic, ...]]:
-    """Return the settings for a file or folder, with the mistakes in its configuration."""
+    """Return the settings for a file or folder, and the findings about its configuration."""
     found = find_configuration(path)
     return (Settings(), ()) if found is None else read_settings(found)
 
 
 def find_configuration(path: Path) -> Path | None:
-    """Return the nearest configuration upwards of a file or folder; ``linkwright.toml`` takes precedence."""
+    """Return the nearest configuration above a file or folder, or None if there is none.
+
+    A ``linkwright.toml`` takes precedence over a ``pyproject.toml`` in the same folder.
+    """
     start = path.absolute()
     for folder in (start, *start.parents):
         own = folder / CONFIGURATION
@@ -73,7 +76,7 @@ def find_configuration(path: Path) -> Path | None:
 
 
 def read_settings(file: Path) -> tuple[Settings, tuple[Diagnostic, ...]]:
-    """Return the settings of a configuration file, with its mistakes (LINT1##)."""
+    """Return the settings of a configuration file, and the findings (LINT1##) about the file."""
     try:
         stamp = file.stat().st_mtime_ns
     except OSError:
@@ -124,7 +127,7 @@ def _syntax_error(source: SourceText, error: Exception) -> Diagnostic:
 
 
 class _Reader:
-    """The reader that turns a table into settings; `found` collects the mistakes."""
+    """The reader that turns a TOML table into settings and collects the mistakes in `found`."""
 
     def __init__(self, source: SourceText, prefix: tuple[str, ...]) -> None:
         self._source = source
@@ -276,12 +279,12 @@ def _fits(option: Option, value: object) -> bool:
 
 
 def _is_plain(value: object) -> bool:
-    """Return whether a value is allowed as the value of an argument."""
+    """Return whether a TOML value is a string, number or boolean, which an argument accepts."""
     return isinstance(value, (str, int, float))
 
 
 def _as_argument(value: str | float) -> str:
-    """Return a value as it is written on a command line."""
+    """Return a TOML value in the form in which it is written on a command line."""
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
@@ -290,7 +293,11 @@ def _written(key: str) -> str:
 
 
 def _locate(source: SourceText, path: tuple[str, ...], mark: str | None) -> Span:
-    """Return the place of a key or of a text in its value, by searching, as tomllib keeps no positions."""
+    """Return the location of a key, or of the text `mark` in the value of the key.
+
+    The source is searched because tomllib stores no positions. If nothing is found, the result is the start of the
+    file.
+    """
     tables: list[tuple[tuple[str, ...], int, int]] = []
     headers = list(_HEADER.finditer(source.text))
     ends = [header.start() for header in headers] + [len(source.text)]
@@ -315,7 +322,7 @@ def _locate(source: SourceText, path: tuple[str, ...], mark: str | None) -> Span
 
 
 def _find_key(text: str, start: int, end: int, keys: tuple[str, ...]) -> tuple[int, int] | None:
-    """Return the range of a table's key (plain, dotted, or in inline tables), or None."""
+    """Return the character range of a plain, dotted or inline key, or None if it is not found."""
     at, span = start, None
     for index, key in enumerate(keys):
         before = r"[.{,=][ \t]*\{?" if index else "^"

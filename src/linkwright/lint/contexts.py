@@ -1,9 +1,9 @@
 """Data that checks share during one run: packages, and results for identical expansions.
 
 A description is checked with every set of values that callers pass to its arguments. Most sets read the same files,
-and many result in the same robot: an address or a rate only matters to the driver. Therefore, rules that look at
-files as they are written run once for them (`Rule.of_sources`), and all rules run once for sets with the same
-expansion.
+and many result in the same robot: an address or a rate only matters to the driver. Therefore, rules that check only
+the sources (`Rule.of_sources`) run once for all sets that read the same files, and all rules run once for all sets
+with the same expansion.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class _Done(NamedTuple):
 
 
 class Contexts:
-    """Data that checks of several files, or of one file with several argument sets, share.
+    """The data that checks of several files, or of one file with several argument sets, share.
 
     Attributes:
         packages: the packages found so far, by folder.
@@ -42,14 +42,17 @@ class Contexts:
         self._last: OfFile | None = None
 
     def of_file(self, path: Path) -> OfFile:
-        """Return the data shared by checks of a file with the same settings; only the last file's is stored."""
+        """Return the data that checks of a file with the same settings share.
+
+        Only the data of the last file is stored.
+        """
         if self._last is None or self._last.path != path:
             self._last = OfFile(path)
         return self._last
 
 
 class OfFile:
-    """Data that checks of a file with several sets of arguments share.
+    """The data that checks of a file with several sets of arguments share.
 
     Attributes:
         path: the file.
@@ -62,9 +65,9 @@ class OfFile:
         self._places: dict[Hashable, int] = {}
 
     def facts(self, facts: XacroFacts) -> XacroFacts:
-        """Return the stored facts of the same files and arguments, or else the given ones.
+        """Return the stored facts about the same files and arguments, or store and return `facts`.
 
-        The values of arguments matter only where names are composed from them.
+        The values of arguments only matter if names are composed from them.
         """
         documents = tuple(id(file.document) for file in facts.files.values())
         key = (facts.is_library, frozenset(facts.given), documents)
@@ -74,18 +77,20 @@ class OfFile:
         return known
 
     def results_for(self, facts: XacroFacts, root: Element, *, is_whole: bool) -> dict[Any, Any]:
-        """Return the results for a description with the same expansion, to be extended; empty for the first one.
+        """Return the shared results for a description with this expansion, which the caller extends.
+
+        The results are empty for the first description with this expansion.
 
         Args:
-            facts: the facts of its files, as `facts` returns them.
-            root: the root element of its expansion.
+            facts: the facts about the description's files, as `facts` returns them.
+            root: the root element of the expansion.
             is_whole: whether no part is missing.
         """
         parts = tuple((element.tag, element.offset) for element in root.elements())
         known = self._done.setdefault((facts, is_whole, parts), {})
         done = _Done(root, {})
         if not known:
-            known[_UNREAD] = done  # most expansions have other parts than all others, and need no further comparison
+            known[_UNREAD] = done  # most expansions differ in their elements, so no content is compared
             return done.results
         if _UNREAD in known:
             first = known.pop(_UNREAD)
@@ -93,9 +98,9 @@ class OfFile:
         return known.setdefault(self._content(root), done).results
 
     def _content(self, root: Element) -> tuple[object, ...]:
-        """Return the whole content of an expanded element, with numbers for the origins of its elements.
+        """Return the content of an expanded element, with numbers for the origins of its elements.
 
-        Sources are identified by `id`; the stored elements keep them alive.
+        Sources are identified by `id`, which is safe because the stored elements keep them alive.
         """
         found: list[object] = []
         numbers: dict[int, int] = {}
@@ -104,7 +109,7 @@ class OfFile:
             node, number = pending.pop()
             own = self._number(node.origin, numbers) if number is None else number
             while isinstance(node, LazyCopy) and node.original is not None:
-                node, number = node.original, own  # an unexpanded copy: content of the original, origin of the copy
+                node, number = node.original, own  # not copied yet: the original's content, the copy's origin
             attributes, children = node.attributes, node.children
             found += (own, node.tag, node.offset, id(node.source), len(attributes), *attributes.items(), len(children))
             for child in children:
@@ -117,9 +122,9 @@ class OfFile:
         return tuple(found)
 
     def _number(self, origin: object, numbers: dict[int, int]) -> int:
-        """Return the number of a chain of macro calls and includes.
+        """Return the number of a chain of macro calls and includes, or 0 if there is no chain.
 
-        New frames of the chain are added to `numbers`, which has those of the document so far.
+        New frames of the chain are added to `numbers`, which maps the `id` of each known frame to its number.
         """
         chain: list[Frame] = []
         frame = origin if isinstance(origin, Frame) else None

@@ -1,6 +1,6 @@
 """Packages that are available without being declared.
 
-These are the packages of every ROS installation, and the dependencies of declared packages.
+Such packages are part of every ROS installation, or dependencies of declared packages.
 """
 
 from __future__ import annotations
@@ -73,12 +73,12 @@ def depends_indirectly_on(manifest: Manifest, package: str, finder: PackageFinde
 
 
 def would_form_cycle(manifest: Manifest, package: str, finder: PackageFinder) -> bool:
-    """Return whether a package depends on that of a manifest, so that the reverse would form a cycle.
+    """Return whether depending on another package would form a cycle, which colcon refuses.
 
-    colcon refuses such a cycle.
+    This is so if the other package depends on the manifest's package.
 
     Args:
-        manifest: the manifest of the package that uses the other.
+        manifest: the manifest of the package that uses the other package.
         package: the name of the other package.
         finder: the finder of packages.
     """
@@ -87,7 +87,10 @@ def would_form_cycle(manifest: Manifest, package: str, finder: PackageFinder) ->
 
 
 def _transitive_dependencies(manifest: Manifest, finder: PackageFinder) -> Iterator[str]:
-    """Yield the names of the direct and indirect dependencies of a manifest, as far as found."""
+    """Yield the names of a manifest's direct and indirect dependencies.
+
+    Dependencies of a package that is not found are left out.
+    """
     waiting, met = [manifest], {manifest.name}
     while waiting and len(met) < _MOST:
         for dependency in waiting.pop().dependencies:

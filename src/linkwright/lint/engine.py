@@ -1,4 +1,4 @@
-"""Check one description: read it, run the rules, and sort the findings."""
+"""The check of one description: reading, running the rules, and sorting the findings."""
 
 from __future__ import annotations
 
@@ -52,9 +52,10 @@ class Checked:
     Attributes:
         path: the file.
         robot: the robot, or None if the file does not describe one.
-        diagnostics: all findings in the order of the text; those of rules are instances of `Finding`.
-        subject: the subject of the rules; None if the file could not be read or expanded.
-        sdf: the world or model of an SDF file with its includes; None for other files, and if it is not SDF.
+        diagnostics: all findings in source order; the findings of rules are instances of `Finding`.
+        subject: the subject of the rules, or None if the file could not be read or expanded.
+        sdf: the world or model of an SDF file with its includes; None for other files, and for a file that is not valid
+            SDF.
     """
 
     path: Path
@@ -71,14 +72,14 @@ def check(
     packages: Packages = None,
     settings: Settings | None = None,
 ) -> list[Diagnostic]:
-    """Return all findings about a URDF, xacro or SDF file or text, in the order of the text.
+    """Return all findings about a URDF, xacro or SDF file or text, in source order.
 
     Args:
-        path_or_text: the file, or a text, which is recognized by its ``<``.
+        path_or_text: the path of a file, or a text, which is recognized by its ``<``.
         arguments: values for the file's ``<xacro:arg>``.
         packages: the packages, as a mapping of names to share folders, or a finder.
-        settings: the settings, which select the rules; by default those of the ``linkwright.toml`` or
-            ``pyproject.toml`` found upwards from the file, or from the current folder for a text.
+        settings: the settings, which select the rules. The default is the nearest ``linkwright.toml`` or
+            ``pyproject.toml`` above the file or, for a text, above the current folder.
     """
     return list(examine(path_or_text, arguments=arguments, packages=packages, settings=settings).diagnostics)
 
@@ -94,7 +95,7 @@ def examine(
     xacro: bool | None = None,
     contexts: Contexts | None = None,
 ) -> Checked:
-    """Check a URDF, xacro or SDF file or text; arguments as for `check`.
+    """Check a URDF, xacro or SDF file or text.
 
     Args:
         path_or_text: see `check`.
@@ -103,7 +104,7 @@ def examine(
         settings: see `check`.
         overlay: texts that replace those of files, such as unsaved ones.
         scopes: the scopes of the rules to run.
-        xacro: whether to expand a robot; None to decide by the file.
+        xacro: whether to expand the description; None to decide by the file.
         contexts: data that checks share during one run.
     """
     text = str(path_or_text) if is_text(path_or_text) else None
@@ -154,7 +155,10 @@ def _examine_world(
 
 
 def _run(subject: Subject, scopes: Collection[Scope], earlier: Iterable[Diagnostic] = ()) -> list[Diagnostic]:
-    """Return the findings of the rules and the earlier ones, filtered by settings and comments, in order."""
+    """Return all findings in source order, filtered by settings and suppression comments.
+
+    These are the `earlier` findings and those of the rules.
+    """
     suppressions = Suppressions(subject, subject.settings)
     found = _without_replaced([*earlier, *_find(subject, scopes, suppressions)], scopes, subject.settings)
     kept = _without_consequences(with_configured_severity(suppressions.apply(found), subject.settings))
@@ -162,9 +166,9 @@ def _run(subject: Subject, scopes: Collection[Scope], earlier: Iterable[Diagnost
 
 
 def _find(subject: Subject, scopes: Collection[Scope], suppressions: Suppressions) -> list[Diagnostic]:
-    """Return the findings of the rules, one for each place.
+    """Return the findings of the rules, one for each rule and location.
 
-    Some are needed only to see whether a suppression comment is used.
+    Findings of unselected rules are included if they show whether a suppression comment is used.
     """
     known = {} if has_rules_of_others() else subject.once(_findings_of_scopes)
     key = frozenset(scopes)
@@ -174,7 +178,7 @@ def _find(subject: Subject, scopes: Collection[Scope], suppressions: Suppression
 
 
 def _findings_of_scopes(_: Subject) -> dict[frozenset[Scope], list[Diagnostic]]:
-    """Return the stored findings of rules by scopes, which subjects with the same expansion share."""
+    """Return a new cache of findings by scopes, which subjects with the same expansion share."""
     return {}
 
 
@@ -191,7 +195,10 @@ def _run_rules(subject: Subject, scopes: Collection[Scope], suppressions: Suppre
 
 
 def _found_by(rule: Rule, subject: Subject) -> Sequence[Diagnostic]:
-    """Return the findings of a rule; one about the rule itself if it is another package's, and fails."""
+    """Return the findings of a rule.
+
+    If a rule of another package raises an exception, the only finding is about this failure.
+    """
     try:
         found = tuple(_reported(rule, subject))
         _check_codes(rule, found)
@@ -218,16 +225,19 @@ def _reported(rule: Rule, subject: Subject) -> Iterable[Diagnostic]:
 
 
 def _may_run(rule: Rule, subject: Subject) -> bool:
-    """Return whether a rule's findings hold for a file with missing parts, or with parts for other files."""
+    """Return whether a rule applies to a subject.
+
+    Most rules apply neither to a description with missing parts nor to a file that only has parts for other files.
+    """
     if rule.scope is Scope.PACKAGE or rule.holds_for_parts:
         return True
     return subject.is_whole and (rule.holds_for_libraries or not subject.is_library)
 
 
 def _of_library(described: Description) -> Iterator[Diagnostic]:
-    """Yield the findings on a file that others include.
+    """Yield the findings on a file that only has parts for other files to include.
 
-    These are findings that hold for each part, and that the file is not a robot.
+    These are the findings that hold for single parts, and a note that the file is not a robot by itself.
     """
     yield from (*described.problems, *described.remarks)
     root = described.document.root
@@ -239,7 +249,11 @@ def _of_library(described: Description) -> Iterator[Diagnostic]:
 
 
 def sorted_by_place(diagnostics: Iterable[Diagnostic], first_file: str) -> list[Diagnostic]:
-    """Sort diagnostics by place: the checked file first, others in the order in which they occur."""
+    """Return diagnostics sorted by location.
+
+    Diagnostics without a location come first, then those of `first_file`. The other files follow in the order of their
+    first diagnostics.
+    """
     files = {first_file: 0}
 
     def place(diagnostic: Diagnostic) -> tuple[int, int, int]:
@@ -264,7 +278,7 @@ def examine_package(
 
     Args:
         folder: the folder of the package.
-        settings: the settings for it.
+        settings: the settings for the package.
         finder: the finder of packages.
         overlay: texts that replace those of files.
         contexts: data that checks share during one run.
@@ -283,7 +297,7 @@ def _finder(path: Path, packages: Packages) -> PackageFinder:
 
 
 def with_configured_severity(diagnostics: Iterable[Diagnostic], settings: Settings) -> Iterator[Diagnostic]:
-    """Yield the diagnostics that the settings allow, with the severities that they set."""
+    """Yield the diagnostics that the settings select, with the configured severities."""
     for diagnostic in with_file_severity(with_package_severity(diagnostics)):
         if _is_wanted(diagnostic, settings):
             severity = settings.severity_of(diagnostic.code, diagnostic.severity)
@@ -291,9 +305,9 @@ def with_configured_severity(diagnostics: Iterable[Diagnostic], settings: Settin
 
 
 def _is_wanted(diagnostic: Diagnostic, settings: Settings) -> bool:
-    """Return whether the settings allow a diagnostic.
+    """Return whether the settings select a diagnostic.
 
-    An error of the reader or of xacro need not be selected: without it, nothing would explain why there is no robot.
+    An error of the reader or of xacro is reported unless it is ignored, because it explains why there is no robot.
     """
     rule = find_rule(diagnostic.code)
     if rule is not None:
@@ -306,7 +320,7 @@ def _is_wanted(diagnostic: Diagnostic, settings: Settings) -> bool:
 
 
 def _without_replaced(diagnostics: list[Diagnostic], scopes: Collection[Scope], settings: Settings) -> list[Diagnostic]:
-    """Return the diagnostics except those that a rule replaces with a better one at the same place."""
+    """Return the diagnostics without those that a better one at the same location replaces."""
     better: dict[str, set[str]] = {}
     for rule in rules_of(scopes):
         if rule.replaces and settings.runs(rule):
@@ -317,10 +331,10 @@ def _without_replaced(diagnostics: list[Diagnostic], scopes: Collection[Scope], 
 
 
 def _without_consequences(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Return the diagnostics except those that follow from another.
+    """Return the diagnostics without those that follow from another diagnostic.
 
-    Links are missing where the tags that should create them lack the xacro prefix, and meshes are missing if an include
-    did not find their package either.
+    If tags lack the xacro prefix, the links that they should create are missing. If an include does not find a package,
+    the meshes of this package are missing, too.
     """
     found = list(diagnostics)
     is_explained = any(each.code == _PREFIX_MISSING for each in found)
@@ -335,7 +349,10 @@ def _without_consequences(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]
 
 
 def _with_trail(diagnostic: Diagnostic) -> Diagnostic:
-    """Return a finding with notes on the macro calls and includes that produced its element."""
+    """Return a finding with notes on the macro calls and includes that produced its element.
+
+    A diagnostic without an element is returned unchanged.
+    """
     if not isinstance(diagnostic, Finding) or diagnostic.element is None or diagnostic.element.origin is None:
         return diagnostic
     from linkwright.xacro.faults import origin_of
@@ -345,12 +362,16 @@ def _with_trail(diagnostic: Diagnostic) -> Diagnostic:
 
 
 def _without_repetitions(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Return one finding for each rule and place, because a macro called four times is written once."""
+    """Return one finding for each rule and location.
+
+    A macro is written once, but may be called several times. The first finding at a location gets a note with the
+    number of the others.
+    """
     first: dict[tuple[str, object, str], int] = {}
     kept: list[Diagnostic] = []
     more: dict[int, int] = {}
     for diagnostic in diagnostics:
-        # Without an element, there is no trail of calls: a different message is a different finding.
+        # Findings without an element have no trail of calls, so different messages are different findings.
         is_expanded = isinstance(diagnostic, Finding) and diagnostic.element is not None
         key = (diagnostic.code, diagnostic.span, "" if is_expanded else diagnostic.message)
         if diagnostic.span is None or key not in first:

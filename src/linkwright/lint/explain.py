@@ -1,6 +1,6 @@
-"""The documentation page of every diagnostic code: a rule's docstring, or a section of ``pages/``.
+"""The documentation pages of diagnostic codes: docstrings of rules, or sections of ``pages/``.
 
-A file of ``pages/`` contains the codes of one room, each as ``## CODE: title`` with the text below it.
+Each file of ``pages/`` has a section ``## CODE: title`` for each code of one room.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _HEADINGS: dict[str, str] = {
 
 @dataclass(frozen=True, slots=True)
 class Page:
-    """The documentation page of a code; texts that can be translated are phrases.
+    """The documentation page of a code. Texts that can be translated are phrases.
 
     Attributes:
         code: the code of the diagnostic.
@@ -51,14 +51,14 @@ class Page:
 
 
 def find_page(code_or_name: str) -> Page | None:
-    """Return the page of a code or rule name, ignoring case; None if there is none."""
+    """Return the page of a code or rule name, ignoring case, or None if there is none."""
     rule = find_rule(code_or_name)
     return rule_page(rule) if rule else room_pages().get(code_or_name.strip().upper())
 
 
 def rule_page(rule: Rule) -> Page:
     """Return the page of a rule: its docstring, how to switch it on or off, and its options."""
-    from inspect import cleandoc  # imported here: a check does not print pages
+    from inspect import cleandoc  # Imported here because a check does not print pages.
 
     title, _, text = cleandoc(rule.__doc__ or "").partition("\n")
     severity = phrase("Severity: {severity}. {state}", severity=term(rule.severity.value), state=_state(rule))
@@ -91,7 +91,7 @@ def known_codes() -> tuple[str, ...]:
 
 
 def nearest_codes(word: str) -> list[str]:
-    """Return codes and rule names that are similar to a word."""
+    """Return the codes and rule names that are similar to a word, such as for a suggestion."""
     upper = word.upper()
     names = [rule.name for rule in all_rules()]
     codes = known_codes()

@@ -1,6 +1,6 @@
-"""Names inside the elements that URDF readers pass on: ``<gazebo>``, ``<transmission>``, ``<ros2_control>``.
+"""Names inside the URDF extensions ``<gazebo>``, ``<transmission>`` and ``<ros2_control>``.
 
-Source: the schemas of ros2_control, the ROS 1 transmission format, and the elements of ``<gazebo>`` that sdformat
+Sources: the schemas of ros2_control, the ROS 1 transmission format, and the elements of ``<gazebo>`` that sdformat
 and Gazebo Classic read.
 """
 

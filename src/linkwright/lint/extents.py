@@ -42,7 +42,7 @@ class Extents:
 
     @cached_property
     def links_with_relevant_mass(self) -> list[tuple[Link, Inertial]]:
-        """The links with shapes whose mass is relevant for their body."""
+        """The links with shapes and a non-negligible mass, each with its ``<inertial>``."""
         if not any(link.inertial for link in self._links):
             return []
         return [
@@ -58,13 +58,18 @@ class Extents:
 
     @cached_property
     def measured(self) -> list[tuple[Link, Inertial, Bounds]]:
-        """The links whose body turns, can be measured and is not a marker, with the body's box in the link's frame."""
+        """The links whose body can rotate and be measured, with ``<inertial>`` and box of the body.
+
+        The links are among `links_with_relevant_mass`. The box is in the link's frame. Links are left out if their body
+        cannot be measured, or if the body is so small that
+        it is a marker.
+        """
         turning = (item for item in self.links_with_relevant_mass if self._bodies.turns(item[0].name))
         boxes = ((link, inertial, self.body_bounds(link)) for link, inertial in turning)
         return [(link, inertial, box) for link, inertial, box in boxes if box is not None and box.diagonal > MARKER]
 
     def mass_properties(self, body: Body) -> MassProperties:
-        """Return the sum of the ``<inertial>`` of a body's links, in the frame of its first link."""
+        """Return the combined mass properties of a body in the frame of its first link."""
         import numpy as np
 
         from linkwright.geometry.mass import MassProperties, combine
@@ -81,20 +86,23 @@ class Extents:
         return combine(parts)
 
     def shape_bounds(self, shape: Visual | Collision) -> Bounds | None:
-        """Return the box around a shape in its link's frame; None if its mesh cannot be read."""
+        """Return the box around a shape in its link's frame.
+
+        The result is None if the shape's mesh cannot be read, or if the shape is too large or too far away.
+        """
         key = id(shape)
         if key not in self._measured:
             self._measured[key] = self._measure(shape)
         return self._measured[key]
 
     def link_bounds(self, link: Link) -> Bounds | None:
-        """Return the box around all shapes of a link in its frame; None if it has none, or one cannot be measured."""
+        """Return the box around a link's shapes in the link's frame; None if it cannot be measured."""
         return self._bounds([*link.visuals, *link.collisions])
 
     def kinds_of_bounds(self, link: Link) -> list[Bounds]:
-        """Return the box around a link's collision shapes and the one around its visuals, where they exist.
+        """Return the boxes around a link's collision shapes and around its visuals, if they exist.
 
-        A stray vertex in a visual's mesh makes only one of them too large.
+        A stray vertex in a visual's mesh makes only one of the boxes too large.
         """
         kinds: tuple[Sequence[Visual | Collision], ...] = (link.collisions, link.visuals)
         boxes = [self._bounds(shapes) for shapes in kinds if shapes]
@@ -106,10 +114,10 @@ class Extents:
         return union(known) if len(known) == len(found) else None
 
     def body_bounds(self, link: Link) -> Bounds | None:
-        """Return the box around a link's whole body in the link's frame; None if a shape cannot be measured.
+        """Return the box around a link's body in the link's frame; None if it cannot be measured.
 
-        For a body of very many links, the box is computed once around all of them, and the box in the link's frame
-        around that.
+        For a body of very many links, one box is computed in the frame of the body's first link. The result is then the
+        box around this box, which may be larger than necessary.
         """
         body = self._bodies.of(link.name)
         if body is None or len(body.frames) == 1:
@@ -123,7 +131,10 @@ class Extents:
         return around.moved(_ORIGIN.seen_from(_clamped(body.frames[link.name])))
 
     def _around(self, body: Body, frame: Placement) -> Bounds | None:
-        """Return the box around a body in a frame given relative to the body's first link."""
+        """Return the box around a body in a frame that is given relative to the body's first link.
+
+        The result is None if a shape cannot be measured.
+        """
         boxes = []
         for member, own in zip(self._bodies.members(body), body.frames.values(), strict=True):
             if not (member.visuals or member.collisions):
@@ -135,9 +146,10 @@ class Extents:
         return union(boxes)
 
     def volume(self, link: Link) -> float | None:
-        """Return the volume of the boxes around a link's shapes, in m3, of the larger shape kind.
+        """Return the volume in m3 of a link's visuals or collision shapes, whichever is larger.
 
-        Simple shapes count with their own volume. The result is None if a mesh cannot be measured.
+        A mesh counts with the volume of its bounding box, a simple shape with its own volume. The result is None if a
+        shape cannot be measured.
         """
         totals = []
         for shapes in (link.visuals, link.collisions):
@@ -170,6 +182,6 @@ class Extents:
 
 
 def _clamped(frame: Placement) -> Placement:
-    """Return a frame whose position is clamped to the bounds, so that nothing overflows."""
+    """Return a placement with its position clamped to `FARTHEST`, to avoid overflow."""
     x, y, z = (min(max(part, -FARTHEST), FARTHEST) for part in frame.position)
     return Placement(frame.rotation, (x, y, z))

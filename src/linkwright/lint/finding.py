@@ -1,4 +1,4 @@
-"""Findings of rules: diagnostics, some with a fix."""
+"""The findings of rules: diagnostics, some with a fix."""
 
 from __future__ import annotations
 
@@ -16,8 +16,9 @@ class Finding(Diagnostic):
     """A diagnostic that a rule reports.
 
     Attributes:
-        fix: a change of the source that fixes the problem, or None if only the author knows the fix.
-        element: the element that the finding is about; the engine adds the macro calls and includes that produced it.
+        fix: a change of the source that fixes the problem, or None if only the author can fix it.
+        element: the element that the finding is about. The engine adds notes on the macro calls and includes that
+            produced the element.
     """
 
     __slots__ = ("element", "fix")
@@ -43,7 +44,7 @@ class Finding(Diagnostic):
 
 
 def with_related(first: Diagnostic, others: Sequence[Diagnostic]) -> Diagnostic:
-    """Return a finding that represents others with the same cause, which become its notes."""
+    """Return the first of several findings with the same cause, with a note for each other one."""
     if not others:
         return first
     notes = tuple(Note(other.message, other.span) for other in others[:_MOST_NOTES])

@@ -1,4 +1,4 @@
-"""Changes to source files that fix a finding, and the edits that most rules need.
+"""Changes to source files that fix a finding, and functions for the most common edits.
 
 An edit replaces a range of characters of one file. Everything else, including formatting and comments, is
 unchanged.
@@ -45,13 +45,13 @@ class Fix:
 
 
 def replace_value(element: Element, attribute: str, value: str, *, safe: bool = True) -> Fix | None:
-    """Change an attribute's value; None if the file does not contain it literally (an expression)."""
+    """Return a fix that changes an attribute's value, or None if the value is not literal."""
     edit = value_edit(element, attribute, value)
     return None if edit is None else Fix((edit,), safe)
 
 
 def rename_attribute(element: Element, old: str, new: str, *, safe: bool = True) -> Fix | None:
-    """Rename an attribute; None if it is not written in the file."""
+    """Return a fix that renames an attribute; None if the attribute is not written in the file."""
     source = element.source
     if source is None or new in element.attributes:
         return None
@@ -60,7 +60,10 @@ def rename_attribute(element: Element, old: str, new: str, *, safe: bool = True)
 
 
 def add_attribute(element: Element, attribute: str, value: str, *, safe: bool = True) -> Fix | None:
-    """Add an attribute after the existing ones; None if the element is not written in a file."""
+    """Return a fix that adds an attribute after the existing ones.
+
+    Return None if the element is not written in a file, or already has the attribute.
+    """
     source = element.source
     opened = start_tag_of(element)
     if source is None or opened is None or attribute in element.attributes:
@@ -70,7 +73,10 @@ def add_attribute(element: Element, attribute: str, value: str, *, safe: bool = 
 
 
 def rename_element(element: Element, tag: str, *, safe: bool = True) -> Fix | None:
-    """Rename an element in its start and end tags."""
+    """Return a fix that renames an element in its start and end tags.
+
+    Return None if the element is not written in a file.
+    """
     source = element.source
     found = element_range(element)
     if source is None or found is None:
@@ -83,7 +89,10 @@ def rename_element(element: Element, tag: str, *, safe: bool = True) -> Fix | No
 
 
 def remove_element(element: Element, *, safe: bool = True) -> Fix | None:
-    """Remove an element and its content, and its line if nothing else is on it."""
+    """Return a fix that removes an element and its content.
+
+    Return None if the element is not written in a file. A line that would be left empty is removed, too.
+    """
     source = element.source
     found = element_range(element)
     if source is None or found is None:
@@ -102,7 +111,7 @@ def value_edit(element: Element, attribute: str, value: str) -> Edit | None:
 
 
 def is_literal(element: Element, attribute: str) -> bool:
-    """Return whether an attribute's value is written literally in the file, not as a xacro expression."""
+    """Return whether an attribute's value is literal in the file, not a xacro expression."""
     source = element.source
     if source is None or attribute not in element.attributes:
         return False

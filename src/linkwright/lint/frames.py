@@ -10,7 +10,7 @@ from linkwright.urdf.tree import walk
 
 
 def placements(robot: Robot) -> Mapping[str, Placement]:
-    """Return the placement of every link in the root link's frame, with all joints at zero."""
+    """Return each link's placement in the root link's frame with all joints at zero, by name."""
     found = {robot.root: Placement(IDENTITY, (0.0, 0.0, 0.0))}
     for joint, _depth in walk(robot):
         if joint.child not in found:

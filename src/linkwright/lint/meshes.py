@@ -20,11 +20,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class MeshUse:
-    """A place where a link uses a mesh.
+    """The use of a mesh by a link.
 
     Attributes:
         link: the link.
-        shape: its visual or collision.
+        shape: the visual or collision with the mesh.
         mesh: the URI and scale.
         element: the ``<mesh>`` element.
     """
@@ -43,8 +43,8 @@ class MeshUse:
 class MeshFacts:
     """The facts about the meshes of one description.
 
-    Nothing is read until a rule needs it. A URI without a file has no path, and an unreadable file has no triangles.
-    The rules about files report these meshes, and all other rules skip them.
+    Files are read only when a rule needs them. A URI without a file has no path, and an unreadable file has no
+    triangles. The rules about files report such meshes, and all other rules skip them.
 
     Args:
         links: the links whose visuals and collisions are checked.
@@ -66,19 +66,19 @@ class MeshFacts:
 
     @cached_property
     def files(self) -> tuple[tuple[MeshUse, Path], ...]:
-        """The uses with a valid URI, each with the file's path, whether or not the file exists."""
+        """The uses with a valid URI, each with the path of the mesh file, which need not exist."""
         found = ((use, self.path(use)) for use in self.uses)
         return tuple((use, path) for use, path in found if path is not None)
 
     def path(self, use: MeshUse) -> Path | None:
-        """Return the path of the file that a mesh's URI names, or None."""
+        """Return the path of the file that a mesh's URI names, or None if the URI is not valid."""
         try:
             return self._library.locate(use.mesh.filename, use.element).absolute()
         except LinkwrightError:
             return None
 
     def problem(self, use: MeshUse) -> LinkwrightError | None:
-        """Return the error of a use's existing but unreadable file, or None."""
+        """Return the error of a mesh file that exists but cannot be read, or None."""
         try:
             self._load(use.mesh, use.element)
         except LinkwrightError as error:
@@ -86,7 +86,7 @@ class MeshFacts:
         return None
 
     def outline(self, shape: Visual | Collision) -> Outline | None:
-        """Return the outline of a shape's mesh, scaled, in the shape's frame; None if it has no readable mesh."""
+        """Return the scaled outline of a shape's mesh in the shape frame; None if it is unreadable."""
         if not isinstance(shape.geometry, Mesh):
             return None
         try:
@@ -104,7 +104,7 @@ class MeshFacts:
 
     @cached_property
     def _library(self) -> MeshLibrary:
-        from linkwright.inertia import MeshLibrary  # imported here: a robot without meshes does not need it
+        from linkwright.inertia import MeshLibrary  # Imported here because a robot without meshes does not need it.
 
         return MeshLibrary(self._finder, self._folder)
 
@@ -118,11 +118,11 @@ class MeshFacts:
 
 
 def shape_element(shape: Visual | Collision) -> Element | None:
-    """Return the ``<box>``, ``<mesh>`` or other geometry element of a visual or collision."""
+    """Return the ``<box>``, ``<mesh>`` or other shape element of a visual or collision, or None."""
     geometry = shape.element.first("geometry") if shape.element is not None else None
     return next(geometry.elements(), None) if geometry is not None else None
 
 
 def material_element(shape: Visual) -> Element | None:
-    """Return the ``<material>`` of a visual."""
+    """Return the ``<material>`` element of a visual, or None."""
     return shape.element.first("material") if shape.element is not None else None

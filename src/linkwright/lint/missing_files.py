@@ -16,10 +16,10 @@ _MISSING = "XML101"
 
 
 def with_file_severity(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
-    """Yield the diagnostics; a missing file that the build creates becomes an information.
+    """Yield the diagnostics, with a lower severity for some missing files.
 
-    Files that exist relative to the package's folder, which another program may use as the base, become one warning for
-    each file that includes them.
+    A file that the build creates later becomes an information. Files that exist relative to the package's folder, which
+    another program may use as the base, become one warning for each file that includes them.
     """
     elsewhere: dict[str, list[Diagnostic]] = {}
     for diagnostic in diagnostics:

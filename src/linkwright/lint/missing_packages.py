@@ -1,4 +1,4 @@
-"""Missing packages: a declared dependency is only missing on this machine, which is not a mistake."""
+"""The severity of missing packages: a declared dependency is only missing on this machine."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _MISSING = "PKG101"
 def with_package_severity(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
     """Yield the diagnostics; a missing package becomes a warning if it is a declared dependency.
 
-    The package that uses it may declare it, or a neighbouring package.
+    Either the package that uses the missing one or a neighbouring package must declare it.
     """
     packages: dict[Path, PackageContext | None] = {}
     for diagnostic in diagnostics:
@@ -38,7 +38,7 @@ def with_package_severity(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnos
 
 
 def is_declared(package: PackageContext, name: str) -> bool:
-    """Return whether a package, or a neighbour that is built in the same workspace, declares another."""
+    """Return whether a package or a neighbour in its workspace declares a dependency."""
     beside = (PackageContext(manifest.parent) for manifest in sorted(package.folder.parent.glob(f"*/{MANIFEST}")))
     manifests = (package_context.manifest for package_context in (package, *beside))
     return any(manifest is not None and manifest.declares(name) for manifest in manifests)

@@ -14,7 +14,7 @@ class Option:
 
     Attributes:
         name: the name in kebab-case.
-        default: the default; another value must have the same type.
+        default: the default, which also determines the type of other values.
         meaning: one phrase for the documentation, with the unit.
     """
 

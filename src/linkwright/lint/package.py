@@ -28,7 +28,7 @@ _DESCRIPTIONS = (".xacro", ".urdf")
 def find_package(
     path: Path, overlay: Overlay | None = None, known: dict[Path, PackageContext] | None = None
 ) -> PackageContext | None:
-    """Return the nearest package upwards of a file or folder, or None if no ``package.xml`` is found.
+    """Return the package that contains a file or folder, or None if there is no ``package.xml``.
 
     Args:
         path: the file or folder.
@@ -47,7 +47,7 @@ def find_package(
 class PackageContext:
     """A ROS package, whose files are read on first use and never executed.
 
-    The readers are imported on first use, too: the check of one robot needs few of them.
+    The modules that read the files are also imported on first use, because the check of one robot needs few of them.
 
     Args:
         folder: the folder with the ``package.xml``.
@@ -73,7 +73,7 @@ class PackageContext:
 
     @property
     def manifest(self) -> Manifest | None:
-        """The package's ``package.xml``; None if it is not XML."""
+        """The package's ``package.xml``, or None if it is not valid XML."""
         return None if isinstance(self._manifest, LinkwrightError) else self._manifest
 
     @property
@@ -105,7 +105,7 @@ class PackageContext:
         return (self.folder / path).exists()
 
     def text(self, path: str) -> SourceText | None:
-        """Return the text of a file of the package; None if it does not exist or cannot be read."""
+        """Return the text of a file of the package, or None if it cannot be read."""
         full = str(self.folder / path)
         unsaved = None if self._overlay is None else self._overlay.text(full)
         if unsaved is not None:
@@ -117,7 +117,7 @@ class PackageContext:
 
     @cached_property
     def setup(self) -> SetupFile | None:
-        """The package's ``setup.py``; None if CMake builds the package, because it does not read one."""
+        """The package's ``setup.py``, or None if there is none or if CMake builds the package."""
         if self.manifest is not None and self.manifest.build_type == "ament_cmake" and self.has("CMakeLists.txt"):
             return None
         from linkwright.packages.readers.setup_py import read_setup
@@ -127,7 +127,7 @@ class PackageContext:
 
     @cached_property
     def cmake(self) -> CMakeFile | None:
-        """The package's ``CMakeLists.txt``, or None."""
+        """The package's ``CMakeLists.txt``, or None if there is none."""
         from linkwright.packages.readers.cmake import read_cmake
 
         source = self.text("CMakeLists.txt")
@@ -148,7 +148,7 @@ class PackageContext:
 
     @cached_property
     def descriptions(self) -> Mapping[Path, Document]:
-        """The package's unexpanded URDF and xacro files, by path, without files that are not XML."""
+        """The package's unexpanded URDF and xacro files, by path, except files that are not XML."""
         from linkwright.xacro.cache import read_document
 
         found: dict[Path, Document] = {}

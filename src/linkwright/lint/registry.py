@@ -1,7 +1,7 @@
 """All lint rules, found through the entry points ``linkwright.lint_rules``.
 
-An entry point names a module, or a package whose modules are all searched; their classes with a code are the rules.
-Rules of other packages are found in the same way as ours, and their codes have a different prefix.
+An entry point names a module, or a package whose modules are all searched. The rules are the classes with a code.
+Rules of other packages are found in the same way, and their codes have a different prefix.
 """
 
 from __future__ import annotations
@@ -36,7 +36,10 @@ def all_rules() -> tuple[Rule, ...]:
 
 
 def rules_of(scopes: Collection[Scope]) -> tuple[Rule, ...]:
-    """Return the rules of some scopes in the order of their codes, importing package rules on demand."""
+    """Return the rules of some scopes in the order of their codes.
+
+    The modules of package rules are imported only if the scopes include packages.
+    """
     return tuple(rule for rule in _found(whole=Scope.PACKAGE in scopes)[0] if rule.scope in scopes)
 
 
@@ -46,7 +49,7 @@ def unusable_rules() -> tuple[Diagnostic, ...]:
 
 
 def has_rules_of_others() -> bool:
-    """Return whether another package adds rules, which may check anything."""
+    """Return whether another package adds rules, whose findings may depend on anything."""
     return any(is_of_others(rule) for rule in _found(whole=False)[0])
 
 
@@ -71,7 +74,7 @@ def failed_rule(rule: Rule, error: Exception) -> Diagnostic:
 
 
 def find_rule(code_or_name: str) -> Rule | None:
-    """Return the rule with a code or name, ignoring case; None if there is none."""
+    """Return the rule with a code or name, ignoring case, or None if there is none."""
     key = code_or_name.strip().casefold()
     rule = _index(whole=False).get(key)
     if rule is None and (key.startswith(_OURS.casefold()) or not _CODE.fullmatch(key.upper())):
@@ -86,9 +89,10 @@ def _index(*, whole: bool) -> Mapping[str, Rule]:
 
 @cache
 def _found(*, whole: bool) -> tuple[tuple[Rule, ...], tuple[Diagnostic, ...]]:
-    """Return the rules; unless `whole`, Linkwright's rules about packages are left out if possible.
+    """Return the rules, sorted by code, and the findings about rules that cannot be used.
 
-    They are left out only if no other package adds rules, because the names of such rules are compared with these, too.
+    Unless `whole`, Linkwright's rules about packages are left out. If another package adds rules, they are always
+    included, because the names of the added rules must differ from all of ours.
     """
     rules: dict[str, Rule] = {}
     problems: list[Diagnostic] = []
@@ -108,7 +112,10 @@ def _is_ours(entry: EntryPoint) -> bool:
 
 
 def _rules_of(entry: EntryPoint, taken: set[str], *, whole: bool) -> list[Rule] | Diagnostic:
-    """Return the rules of an entry point, or a diagnostic if those of another package cannot be used."""
+    """Return the rules of an entry point, or a diagnostic if they cannot be used.
+
+    An exception in our own rules is not caught.
+    """
     if _is_ours(entry):
         return _load(entry, taken, is_ours=True, whole=whole)
     try:
@@ -118,7 +125,7 @@ def _rules_of(entry: EntryPoint, taken: set[str], *, whole: bool) -> list[Rule] 
 
 
 def _load(entry: EntryPoint, taken: set[str], *, is_ours: bool, whole: bool) -> list[Rule]:
-    """Return the rules that an entry point provides.
+    """Return the rules that an entry point provides, and add their codes and names to `taken`.
 
     Raises:
         ValueError: If a code or name is taken or malformed.
@@ -150,10 +157,10 @@ def _modules(module: ModuleType, is_ours: bool, whole: bool) -> Iterator[ModuleT
 
 
 def _module_names(folder: str, *, is_ours: bool) -> Iterator[str]:
-    if is_ours:  # a folder in the file system that contains each module as a file
+    if is_ours:  # our folder is in the file system and contains a file for each module
         yield from (file.stem for file in Path(folder).glob("*.py") if file.stem != "__init__")
         return
-    from pkgutil import iter_modules  # imported here: its import takes as long as that of all our rules about joints
+    from pkgutil import iter_modules  # imported here because the import is slow
 
     yield from (entry.name for entry in iter_modules([folder]))
 
@@ -161,7 +168,7 @@ def _module_names(folder: str, *, is_ours: bool) -> Iterator[str]:
 def _classes(module: ModuleType) -> Iterator[type[Rule]]:
     for value in vars(module).values():
         is_own = isinstance(value, type) and issubclass(value, Rule) and value.__module__ == module.__name__
-        if is_own and not value.__name__.startswith("_") and "code" in vars(value):  # others are base classes of rules
+        if is_own and not value.__name__.startswith("_") and "code" in vars(value):  # other classes are base classes
             yield value
 
 

@@ -17,7 +17,7 @@ Value = TypeVar("Value", bool, int, float, str, list[str])
 
 
 class Scope(Enum):
-    """The scopes of rules: the kind of input that a rule checks."""
+    """The kind of input that a rule checks."""
 
     DESCRIPTION = "description"
     """One robot description; the rule runs once for each."""
@@ -30,26 +30,26 @@ class Scope(Enum):
 class Rule:
     """The base class of lint rules, whose docstrings are their pages in the documentation.
 
-    Each rule is a small subclass. The first line of its docstring names the fault that it reports. The sections ``##
-    Why``, ``## Example`` and ``## Use instead`` follow.
+    Each rule is a small subclass. The first line of its docstring names the fault that the rule reports. The sections
+    ``## Why``, ``## Example`` and ``## Use instead`` follow.
 
     Attributes:
-        code: ``LW`` and three digits, never reused with another meaning; rules of other packages use a different
+        code: ``LW`` and three digits, never reused with another meaning. Rules of other packages use a different
             prefix.
         name: the name in kebab-case, which is accepted wherever a code is.
-        severity: the default severity of its findings.
+        severity: the default severity of the rule's findings.
         default: whether the rule is on by default; pedantic rules are not.
-        scope: the kind of input that it checks.
-        holds_for_parts: whether its findings hold for a description with missing parts, because it checks single
+        scope: the kind of input that the rule checks.
+        holds_for_parts: whether the findings hold for a description with missing parts, because the rule checks single
             elements or texts.
-        holds_for_libraries: whether it checks files as they are written, so that it applies to a file that only defines
-            macros. Rules that hold for parts apply too.
-        of_sources: whether its findings depend only on the files as they are written, their package and the names of
-            the arguments: the rule then runs once for all sets of arguments that read the same files.
+        holds_for_libraries: whether the rule also applies to a file that only defines macros, because it checks the
+            unexpanded files. Rules that hold for parts apply, too.
+        of_sources: whether the findings depend only on the unexpanded files, their package and the names of the
+            arguments. Such a rule runs once for all sets of arguments that read the same files.
         needs_all_sets: whether a finding is valid only if it occurs with every set of arguments, such as that a macro
             is never used.
-        options: its settings.
-        replaces: the codes of findings that a finding of this rule replaces at the same place.
+        options: the options of the rule.
+        replaces: the codes of the findings that a finding of this rule replaces at the same location.
     """
 
     code: ClassVar[str]
@@ -65,16 +65,16 @@ class Rule:
     replaces: ClassVar[tuple[str, ...]] = ()
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Yield the findings of the rule; it must not raise, whatever the description contains."""
+        """Yield the findings of the rule; must not raise, whatever the description contains."""
         raise NotImplementedError(f"{self.code} cannot check {subject.path}")
 
     def option(self, subject: Subject, name: str, kind: type[Value]) -> Value:
-        """Return the value of an option in the settings for a subject, or its default.
+        """Return the value of an option in the settings for a subject, or the default.
 
         Args:
             subject: the subject.
             name: the name of the option, one of `options`.
-            kind: its type; ``float`` also accepts an integer.
+            kind: the type of the value; ``float`` also accepts an integer.
         """
         declared = next(option for option in self.options if option.name == name)
         value = subject.settings.options.get(self.name, {}).get(name, declared.default)
@@ -100,15 +100,15 @@ class Rule:
 
         Args:
             message: one sentence without a full stop, with names as the user wrote them.
-            element: the element that the finding is about; it provides the place and the macro calls and includes that
-                produced it.
-            attribute: the attribute of the element whose value is the place.
-            span: the place, if it is not that of an element or attribute.
-            source: the text that `span` is in, for the excerpt.
-            notes: facts that explain the finding, with their places.
+            element: the element that the finding is about. It provides the location, and the macro calls and includes
+                that produced it.
+            attribute: the attribute of the element whose value is the location.
+            span: the location, if it is not that of an element or attribute.
+            source: the text that contains `span`, for the excerpt.
+            notes: facts that explain the finding, with their locations.
             hint: how to fix the problem.
             fix: a change of the source that fixes the problem.
-            severity: the severity, if it is not the rule's.
+            severity: the severity, if it differs from the rule's.
         """
         if element is not None:
             if span is None:

@@ -1,4 +1,4 @@
-"""The words by which a user selects rules: which words are selectors, and their canonical forms."""
+"""The validation of selectors, and their canonical forms."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ _CODE = lazy_pattern("[A-Z]+[0-9]{0,3}")
 
 
 def is_selector(word: str) -> bool:
-    """Return whether a word can select findings."""
+    """Return whether a word is a valid selector of findings."""
     if word == ALL or find_rule(word) is not None:
         return True
     if not _CODE.fullmatch(word):
         return False
-    from linkwright.lint.explain import room_pages  # imported here: most checks have no selectors
+    from linkwright.lint.explain import room_pages  # imported here because most checks have no selectors
 
     return any(rule.code.startswith(word) for rule in all_rules()) or any(
         code.startswith(word) for code in room_pages()
@@ -24,13 +24,16 @@ def is_selector(word: str) -> bool:
 
 
 def canonical(word: str) -> str:
-    """Return the canonical form of a selector: a rule's code for its name, otherwise the word itself."""
+    """Return the canonical form of a selector, which is a code for the name of a rule.
+
+    Other words are returned unchanged.
+    """
     rule = find_rule(word)
     return rule.code if rule else word
 
 
 def selector_hint(word: str) -> Phrase:
-    """Return A hint on a word that selects nothing."""
+    """Return a hint on a word that is not a valid selector."""
     candidates = [name for rule in all_rules() for name in (rule.name, rule.code)]
     near = nearest(word, candidates, limit=1)
     if near:

@@ -1,4 +1,4 @@
-"""Selectors: the words by which settings, suppression comments and the command line name rules.
+"""Selectors, by which settings, suppression comments and the command line select findings.
 
 A selector is the code of a rule or of another diagnostic (``LW201``), the beginning of a code (``LW2``), the name
 of a rule (``limit-inverted``), or ``ALL``.
@@ -12,14 +12,14 @@ ALL = "ALL"
 
 
 def matches(selectors: Iterable[str], code: str) -> bool:
-    """Return whether one of the (canonical) selectors matches a code."""
+    """Return whether at least one of the canonical selectors matches a code."""
     return specificity(selectors, code) > 0
 
 
 def specificity(selectors: Iterable[str], code: str) -> int:
-    """Return how specifically (canonical) selectors match a code.
+    """Return how specific the best match of canonical selectors with a code is.
 
-    The result is 0 for no match, 1 for ``ALL``, and more for a longer selector. The most specific selector counts.
+    The result is 0 for no match, 1 for ``ALL``, and more for a longer selector.
     """
     return max((_closeness(selector, code) for selector in selectors), default=0)
 

@@ -15,7 +15,7 @@ from linkwright.xmltree.style import Style
 
 
 class SwitchableRule(Protocol):
-    """A rule as far as settings need to know it to switch it on or off."""
+    """The properties of a rule by which settings decide whether it runs."""
 
     @property
     def code(self) -> str:
@@ -32,20 +32,20 @@ class SwitchableRule(Protocol):
 class Settings:
     """The settings of a check. Selectors are codes, beginnings of codes, or ``ALL``.
 
-    If several selectors match a code, the most specific one decides; between equally specific ones, the one that
-    ignores.
+    If several selectors match a code, the most specific one decides. Among equally specific selectors, an ignoring one
+    takes precedence.
 
     Attributes:
         select: the selectors of findings to report; None means all rules that are on by default and all warnings of the
             reader.
         extend_select: the selectors of additional findings to report.
-        ignore: the selectors of findings not to report.
-        severity: selector -> severity of the findings that it matches.
-        per_file_ignores: pairs of a path pattern and the selectors not to report in matching files.
-        options: rule name -> option -> value.
-        arguments: pairs of a path pattern and the sets of values with which matching descriptions are checked.
+        ignore: the selectors of findings to ignore.
+        severity: the severity of matching findings, by selector.
+        per_file_ignores: pairs of a path pattern and the selectors to ignore in matching files.
+        options: the values of options, by rule name and option name.
+        arguments: pairs of a path pattern and the argument sets with which matching descriptions are checked.
         style: the style in which `linkwright format` writes files.
-        folder: the folder that path patterns are relative to; None if there is no configuration file.
+        folder: the base of path patterns, or None if there is no configuration file.
     """
 
     select: tuple[str, ...] | None = None
@@ -59,18 +59,18 @@ class Settings:
     style: Style = Style()
 
     def runs(self, rule: SwitchableRule) -> bool:
-        """Return whether a rule must run at all."""
+        """Return whether the settings select a rule, so that it must run."""
         return self.selects(rule.code, default=rule.default)
 
     def selects(self, code: str, *, default: bool = True) -> bool:
-        """Return whether findings of a code are reported.
+        """Return whether findings with a code are reported.
 
         Args:
-            code: the code of the finding.
-            default: whether they are reported by default.
+            code: the code.
+            default: whether such findings are reported by default.
         """
         if self.select is None and not self.extend_select and not self.ignore:
-            return default  # as in most projects; this is called for each rule of each check
+            return default  # the usual case, which must be fast because every rule is tested
         wanted = specificity(self.extend_select, code)
         if self.select is not None:
             wanted = max(wanted, specificity(self.select, code))
@@ -79,12 +79,15 @@ class Settings:
         return wanted > specificity(self.ignore, code)
 
     def is_ignored(self, code: str) -> bool:
-        """Return whether a code is ignored by a selector at least as specific as the one that selects it."""
+        """Return whether a code is ignored.
+
+        The selector that ignores the code must be at least as specific as the one that selects it.
+        """
         wanted = specificity((*(self.select or ()), *self.extend_select), code)
         return specificity(self.ignore, code) > 0 and specificity(self.ignore, code) >= wanted
 
     def ignores(self, code: str, file: str) -> bool:
-        """Return whether findings of a code are not reported in one file."""
+        """Return whether findings with a code are ignored in a file by ``per-file-ignores``."""
         if not self.per_file_ignores:
             return False
         return any(
@@ -94,7 +97,7 @@ class Settings:
         )
 
     def arguments_of(self, file: Path) -> tuple[Mapping[str, str], ...]:
-        """Return the sets of values for a description's arguments in the settings; empty if there are none."""
+        """Return the configured argument sets of a description; empty if there are none."""
         return tuple(values for pattern, sets in self.arguments if self._is_meant(file, pattern) for values in sets)
 
     def _is_meant(self, file: Path, pattern: str) -> bool:
@@ -104,7 +107,7 @@ class Settings:
         return fnmatchcase(path.as_posix(), pattern) or fnmatchcase(path.name, pattern)
 
     def severity_of(self, code: str, otherwise: Severity) -> Severity:
-        """Return the severity of findings of a code, or else the given one."""
+        """Return the configured severity of findings with a code, or `otherwise` if there is none."""
         best, severity = 0, otherwise
         for selector, wanted in self.severity.items():
             closeness = specificity([selector], code)
@@ -113,9 +116,9 @@ class Settings:
         return severity
 
     def with_words(self, select: tuple[str, ...] | None, ignore: tuple[str, ...]) -> Settings:
-        """Return the settings combined with those of the command line.
+        """Return the settings combined with the selectors of the command line.
 
-        Its selection replaces that of the settings, and its ignored codes are added.
+        `select` replaces the selection and the ignored codes of the settings; `ignore` is added.
         """
         changed = replace(self, ignore=(*self.ignore, *ignore))
         if select is not None:

@@ -1,4 +1,4 @@
-"""The elements of a description in the URDF schema: those with a place in it, and unread ones."""
+"""The elements of a description as the URDF schema sees them: known and unknown ones."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ class Place(NamedTuple):
 
     Attributes:
         element: the element.
-        rule: the attributes and children that it may have.
-        parent: the place of the enclosing element; None for ``<robot>``.
-        owner: the link, joint or material that contains the element or is the element; None for ``<robot>``.
+        rule: the schema rule: the attributes and children that the element may have.
+        parent: the place of the enclosing element, or None for ``<robot>``.
+        owner: the link, joint or material that contains the element or is the element, or None for ``<robot>``.
     """
 
     element: Element
@@ -31,16 +31,16 @@ class Place(NamedTuple):
 
     @property
     def of_owner(self) -> str:
-        """The text after an element's tag in a message, such as `` of joint 'elbow'``."""
+        """The text that follows an element's tag in a message, such as `` of joint 'elbow'``."""
         return "" if self.owner is None or self.owner is self.element else f" of {_owner_name(self.owner)}"
 
     def __str__(self) -> str:
-        """Return the element as messages name it, such as ``joint 'elbow'`` or ``<limit> of joint 'elbow'``."""
+        """Return the name of the element for messages, such as ``<limit> of joint 'elbow'``."""
         return _owner_name(self.element) if self.owner is self.element else f"<{self.rule.tag}>{self.of_owner}"
 
 
 class Structure:
-    """The elements of a description; each list is computed on first use.
+    """The known and unknown elements of a description; each list is computed on first use.
 
     Args:
         root: the root element.
@@ -56,7 +56,10 @@ class Structure:
 
     @cached_property
     def unknown_elements(self) -> list[tuple[Place, Element]]:
-        """The elements that URDF does not define at their places, except those of other tools and namespaces."""
+        """The elements that URDF does not define in their parents, except those of other tools.
+
+        Elements of other namespaces are left out, too.
+        """
         return [(place, child) for place, child in self._walked[1] if not _is_expected(place, child)]
 
     @cached_property
@@ -71,7 +74,7 @@ class Structure:
 
     @cached_property
     def _walked(self) -> tuple[list[Place], list[tuple[Place, Element]]]:
-        """The elements that URDF defines, and the undefined elements inside them, both in document order."""
+        """The elements that URDF defines, and the unknown elements in them, both in document order."""
         known: list[Place] = []
         unknown: list[tuple[Place, Element]] = []
         waiting = [Place(self._root, schema.ROBOT, None, None)] if self._root.tag == schema.ROBOT.tag else []
@@ -93,12 +96,12 @@ class Structure:
 def _is_expected(place: Place, child: Element) -> bool:
     if ":" in child.tag or (place.rule is schema.ROBOT and child.tag in EXTENSIONS):
         return True
-    # An unknown shape, which the reader reports.
+    # The reader reports an unknown shape.
     return place.rule is schema.GEOMETRY and child is next(place.element.elements(), None)
 
 
 def _owner_name(element: Element) -> str:
-    """Return the name of a link, joint or material for messages."""
+    """Return a link, joint or material as named in messages, such as ``joint 'elbow'``."""
     name = element.attributes.get("name")
     return (
         phrase("a {tag} without a name", tag=term(element.tag))

@@ -1,4 +1,4 @@
-"""The subject of rules: a description as written, as expanded and as read, and its surroundings."""
+"""The subject of rules: a description in its unexpanded, expanded and parsed forms."""
 
 from __future__ import annotations
 
@@ -45,12 +45,12 @@ class Subject:
 
     Attributes:
         description: the description to check.
-        path: the checked file; relative paths in the description start from its folder.
-        document: the expanded document; its elements know the file and place where they were written.
+        path: the checked file, whose folder is the base of relative paths in the description.
+        document: the expanded document, whose elements know their file and position in the source.
         reading: the result of the URDF reader.
         expansion: the expansion, or None for plain URDF.
-        is_whole: whether the description is complete. If not, it contains the parts that could be expanded, without
-            a robot.
+        is_whole: whether the description is complete. An incomplete description only has the parts that could be
+            expanded, and no robot.
     """
 
     def __init__(
@@ -83,7 +83,7 @@ class Subject:
 
     @property
     def robot(self) -> Robot | None:
-        """The robot; None if the model is so wrong that urdfdom would refuse it."""
+        """The robot, or None if urdfdom would refuse the model."""
         return self.reading.robot
 
     @property
@@ -92,7 +92,10 @@ class Subject:
         return self.document.root
 
     def once(self, work: Callable[[Subject], Value]) -> Value:
-        """Return the result of a function for this subject, computed once for all rules and equal subjects."""
+        """Return the result of a function for this subject, computed only once.
+
+        All rules share the result, and so do subjects with the same expansion.
+        """
         if work not in self._done:
             self._done[work] = work(self)
         value: Value = self._done[work]
@@ -100,18 +103,18 @@ class Subject:
 
     @cached_property
     def _done(self) -> dict[Any, Any]:
-        """The results for this subject, or for one with other arguments and the same expansion."""
+        """The cached results for all subjects with the same expansion, by function."""
         if self._shared is None:
             return {}
         return self._shared.results_for(self.xacro, self.root, is_whole=self.is_whole)
 
     def elements(self, tag: str | None = None) -> Iterator[Element]:
-        """Return the elements directly in ``<robot>``, all or those with one tag, in document order."""
+        """Return the direct children of ``<robot>`` in document order, all or those with one tag."""
         return self.root.elements() if tag is None else iter(self._by_tag.get(tag, ()))
 
     @cached_property
     def _by_tag(self) -> Mapping[str, list[Element]]:
-        """The elements directly in ``<robot>`` by tag, since most rules need those with one tag."""
+        """The direct children of ``<robot>`` by tag, since most rules need elements with one tag."""
         found: dict[str, list[Element]] = {}
         for element in self.root.elements():
             found.setdefault(element.tag, []).append(element)
@@ -119,7 +122,7 @@ class Subject:
 
     @cached_property
     def joints(self) -> tuple[Joint, ...]:
-        """All joints in file order; for a refused model, those that can be read, whose names may repeat."""
+        """All joints in source order; in a refused model, the readable ones, with repeated names."""
         if self.robot is not None:
             return tuple(self.robot.joints.values())
         from linkwright.urdf.reader import read_joint
@@ -129,7 +132,7 @@ class Subject:
 
     @cached_property
     def links(self) -> tuple[Link, ...]:
-        """All links in file order; for a refused model, those that can be read, whose names may repeat."""
+        """All links in source order; in a refused model, the readable ones, with repeated names."""
         if self.robot is not None:
             return tuple(self.robot.links.values())
         from linkwright.urdf.reader import MaterialTable, read_link
@@ -141,7 +144,7 @@ class Subject:
 
     @property
     def sources(self) -> Mapping[Path, Document]:
-        """Every XML file that was read, unexpanded, the checked file first."""
+        """The unexpanded XML files that were read, by path, starting with the checked file."""
         return self.description.sources
 
     @cached_property
@@ -158,7 +161,7 @@ class Subject:
 
     @cached_property
     def structure(self) -> Structure:
-        """The elements of the description: those that URDF defines, and unread ones."""
+        """The known and unknown elements of the description in the URDF schema."""
         from linkwright.lint.structure import Structure
 
         return Structure(self.root)
@@ -181,7 +184,7 @@ class Subject:
 
     @property
     def _shared(self) -> OfFile | None:
-        """The data that checks of an expanded file with different sets of arguments share."""
+        """The data that checks with different argument sets share, or None for plain URDF."""
         if self._contexts is None or self.expansion is None or self.description.overlay is not None:
             return None
         return self._contexts.of_file(self.path)
@@ -195,7 +198,7 @@ class Subject:
 
     @cached_property
     def extents(self) -> Extents:
-        """The bounding boxes of shapes, and the mass properties of bodies."""
+        """The bounding boxes of the shapes, and the mass properties of the bodies."""
         from linkwright.lint.extents import Extents
 
         return Extents(self.links, self.bodies, self.meshes)
@@ -210,14 +213,17 @@ class Subject:
 
     @cached_property
     def frames(self) -> Mapping[str, Placement]:
-        """The placement of every link in the root link's frame with all joints at zero; empty if no robot."""
+        """The placement of every link in the root link's frame with all joints at zero, by name.
+
+        The mapping is empty if there is no robot.
+        """
         from linkwright.lint.frames import placements
 
         return {} if self.robot is None else placements(self.robot)
 
     @cached_property
     def package(self) -> PackageContext | None:
-        """The ROS package of the file, or None."""
+        """The ROS package that contains the file, or None."""
         from linkwright.lint.package import find_package
 
         known = None if self._contexts is None else self._contexts.packages

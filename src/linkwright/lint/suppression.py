@@ -1,8 +1,8 @@
 """Suppression of findings by comments in the files.
 
-``<!-- linkwright: ignore LW204 limit-inverted (reason) -->`` on its own line applies to the element that follows
-and everything in it; on a line with other content, it applies to that line. ``ignore-file`` applies to the whole
-file. In files that are not XML, the comment begins with ``#``. A comment without codes suppresses all findings.
+``<!-- linkwright: ignore LW204 limit-inverted (reason) -->`` on its own line applies to the following element with its
+content. On a line with other content, the comment applies to this line. ``ignore-file`` applies to the whole file. In
+files that are not XML, the comment begins with ``#``. A comment without codes suppresses all findings.
 """
 
 from __future__ import annotations
@@ -44,9 +44,9 @@ class Directive:
         source: the text that contains the comment.
         start: the character offset of the comment.
         end: the character offset after the comment.
-        selectors: the selectors in the comment, each with its offset; empty means everything.
-        ranges: the ranges of character offsets that the comment applies to; None means the whole file.
-        used: the selectors that suppressed something.
+        selectors: the selectors in the comment, each with its offset; empty if the comment suppresses everything.
+        ranges: the ranges of character offsets to which the comment applies, or None for the whole file.
+        used: the selectors that suppressed a finding.
     """
 
     source: SourceText
@@ -57,7 +57,10 @@ class Directive:
     used: set[str] = field(default_factory=set)
 
     def suppresses(self, code: str, offset: int) -> bool:
-        """Return whether the comment suppresses a finding of a code at a place, and record that it was used."""
+        """Return whether the comment suppresses a finding with a code at an offset.
+
+        The selectors that match are recorded as used.
+        """
         if self.ranges is not None and not any(start <= offset < end for start, end in self.ranges):
             return False
         if not self.selectors:
@@ -72,7 +75,7 @@ class Suppressions:
     """The suppression comments of all files that a check reads.
 
     Args:
-        subject: the subject of the check; the comments of all its files are read.
+        subject: the subject of the check, whose files are searched for comments.
         settings: the settings, which determine whether unused and unknown suppressions are reported.
     """
 
@@ -86,12 +89,15 @@ class Suppressions:
                 self._directives[str(path)] = list(directives(document.source))
 
     def apply(self, diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
-        """Return the diagnostics that no comment suppresses, and those about the comments themselves."""
+        """Return the diagnostics that no comment suppresses, and the findings about the comments."""
         kept = [diagnostic for diagnostic in diagnostics if not self._suppresses(diagnostic)]
         return [*kept, *self._unknown(), *self._unused()]
 
     def audits(self, code: str) -> bool:
-        """Return whether comments need the findings of a code to show their use, even if not selected."""
+        """Return whether the findings with a code are needed, even if not selected.
+
+        They show whether a comment that suppresses them is used.
+        """
         if not self._audits:
             return False
         return any(
@@ -157,7 +163,7 @@ class Suppressions:
 
 
 def directives(source: SourceText) -> Iterator[Directive]:
-    """Yield the suppression comments of a text, in order."""
+    """Yield the suppression comments of a text in source order."""
     text = source.text
     if "linkwright:" not in text:
         return
@@ -199,7 +205,10 @@ def _following_element(text: str, end: int) -> tuple[int, int] | None:
 
 
 def _places(diagnostic: Diagnostic) -> Iterator[tuple[str, int]]:
-    """Yield the places of a finding: its own, and those of the macro calls and includes that produced it."""
+    """Yield the file and character offset of a finding and of the calls that produced it.
+
+    The calls are the macro calls and includes that contain the finding's element.
+    """
     if diagnostic.span is not None:
         if diagnostic.source is not None and diagnostic.source.name == diagnostic.span.file:
             source = diagnostic.source

@@ -1,4 +1,4 @@
-"""Search for the descriptions and packages to check in the files and folders that the user names."""
+"""The search for descriptions and packages in the files and folders that the user names."""
 
 from __future__ import annotations
 
@@ -61,11 +61,13 @@ class Targets:
 def find_targets(paths: Iterable[Path], *, around: bool = False) -> Targets:
     """Return the descriptions and packages to check for files and folders.
 
-    A file is always checked; its package is checked only with `around`. For a folder, the packages in it and below it
-    are checked, including the package that contains the folder. So are those files that no other file there includes:
-    ``.urdf``, ``.sdf`` and ``.world`` files, and those ``.xacro`` files that describe a complete robot: their root is a
-    ``<robot>`` with a name, and they contain more than declarations. Build products, hidden folders and empty files are
-    skipped. So are web pages inside a package, which read URDF in their own way.
+    A file is always checked. The package of a file is checked only with `around`.
+
+    For a folder, the packages in and below the folder are checked, and the package that contains the folder. Of the
+    descriptions, those that no other file there includes are checked: ``.urdf``, ``.sdf`` and ``.world`` files, and
+    ``.xacro`` files that describe a complete robot. The root of such a file is a ``<robot>`` with a name, and it
+    contains more than declarations. Build products, hidden folders and empty files are skipped. Web pages inside a
+    package are also skipped, because they read URDF in their own way.
     """
     files: dict[Path, None] = {}
     packages: dict[Path, None] = {}
@@ -85,9 +87,10 @@ def find_targets(paths: Iterable[Path], *, around: bool = False) -> Targets:
 
 
 def find_xml_files(paths: Iterable[Path]) -> list[Path]:
-    """Return the XML files of robot packages among files and folders, each once, without those that a check skips.
+    """Return the XML files of robot packages among files and folders, without duplicates.
 
-    In folders these are descriptions, worlds, launch files and manifests, without files that xacro made.
+    In folders, these are descriptions, worlds, launch files and manifests. Files that a check skips, and files that
+    xacro generated, are left out.
     """
     files: dict[Path, None] = {}
     for path in paths:
@@ -100,7 +103,10 @@ def find_xml_files(paths: Iterable[Path]) -> list[Path]:
 
 
 def walk(folder: Path, endings: tuple[str, ...]) -> tuple[list[Path], list[Path]]:
-    """Return the files with some extensions and the packages, in and below a folder, sorted by name."""
+    """Return the files with some extensions, and the folders of packages, in and below a folder.
+
+    Both are in the order of a walk through folders sorted by name.
+    """
     found: list[Path] = []
     packages: list[Path] = []
     for place, folders, names in os.walk(folder):
@@ -129,10 +135,10 @@ def _entries(found: list[Path]) -> Iterator[Path]:
 
 
 def _is_part(path: Path) -> bool:
-    """Return whether a file is only a part of a robot, or empty, although its name is that of a robot.
+    """Return whether a file is only a part of a robot, or empty, despite its extension.
 
     Examples are materials, plugins and macros, the files of webots_ros2_driver, parts of a robot that were expanded
-    separately, a single URDF element, and files that are still to be written.
+    separately, a single URDF element, and unfinished files.
     """
     try:
         root = read_document(str(path)).root
@@ -148,16 +154,16 @@ def _is_part(path: Path) -> bool:
 
 
 def _is_empty(path: Path, error: LinkwrightError) -> bool:
-    """Return whether a file that is not XML has only comments, because it is unwritten or discarded."""
+    """Return whether a file that is not XML is blank or only has comments."""
     if any(diagnostic.code == _EMPTY_FILE for diagnostic in error.diagnostics):
         return True
     return not _COMMENT.sub("", _text(path).lstrip("\ufeff")).strip()
 
 
 def included_names(text: str) -> Iterator[str]:
-    """Yield the names of the files that a description includes.
+    """Yield the names of the files that a description includes, without their folders.
 
-    Arguments and `$(optenv ...)` have their default values.
+    Arguments and `$(optenv ...)` are replaced by their default values.
     """
     arguments = [dict(_ATTRIBUTE.findall(tag)) for tag in _ARGUMENT.findall(text)]
     defaults = {argument["name"]: argument.get("default", "") for argument in arguments if "name" in argument}
@@ -170,7 +176,7 @@ def _text(path: Path) -> str:
     try:
         return path.read_text(encoding="utf-8", errors="replace")
     except OSError:
-        return ""  # the check reports this error
+        return ""  # the check of the file reports this error
 
 
 def _describes_robot(path: Path) -> bool:
@@ -179,12 +185,15 @@ def _describes_robot(path: Path) -> bool:
     try:
         root = read_document(str(path)).root
     except LinkwrightError as error:
-        return not _is_empty(path, error)  # the check reports any other error
+        return not _is_empty(path, error)  # the check of the file reports any other error
     return root.tag == "robot" and "name" in root.attributes and _has_content(root)
 
 
 def _has_content(root: Element) -> bool:
-    """Return whether a file contains more than declarations; a wrapper that only includes others counts."""
+    """Return whether a file contains more than declarations.
+
+    A file that only includes others counts as having content.
+    """
     tags = {element.tag for element in root.elements()}
     return (
         bool(tags - _DECLARATIONS - _WITHOUT_LINKS)

@@ -1,4 +1,4 @@
-"""Inertia tensors as they are written in descriptions, and their first flaw."""
+"""Inertia tensors as given in descriptions, and their first flaw."""
 
 from __future__ import annotations
 
@@ -18,11 +18,13 @@ _NAMED = 4
 
 @dataclass(frozen=True, slots=True)
 class Flaw:
-    """The first flaw of a link's tensor; further flaws are not reported, so that one rule reports it.
+    """The first flaw of a link's tensor.
+
+    Further flaws of the tensor are not reported, so that only one rule reports it.
 
     Attributes:
         kind: ``zero``, ``diagonal``, ``product``, ``indefinite`` or ``triangle``.
-        attribute: the attribute with the flaw, or None if it concerns all attributes.
+        attribute: the attribute with the flaw, or None if the flaw concerns all attributes.
         amount: a number that quantifies the flaw: the largest allowed product, or the fraction by which the inequality
             is violated.
     """
@@ -33,18 +35,18 @@ class Flaw:
 
 
 def tensor(inertial: Inertial) -> Matrix:
-    """Return the inertia tensor given in ``<inertial>``, unrotated, in kg m2."""
+    """Return the inertia tensor given in ``<inertial>``, without its rotation, in kg m2."""
     i = inertial
     return (i.ixx, i.ixy, i.ixz), (i.ixy, i.iyy, i.iyz), (i.ixz, i.iyz, i.izz)
 
 
 def _rounding(inertial: Inertial) -> float:
-    """Return by how much the omitted digits can change a principal moment, in kg m2.
+    """Return the largest change of a principal moment that rounding can cause, in kg m2.
 
-    Each component may be off by half of its last digit; a principal moment then changes by at most the largest row sum
+    Each component may be off by half of its last digit. A principal moment then changes by at most the largest row sum
     of these errors (Weyl's inequality).
     """
-    from decimal import Decimal, InvalidOperation  # imported here: few tensors have products of inertia
+    from decimal import Decimal, InvalidOperation  # imported here because few tensors have products of inertia
 
     element = inertial.element and inertial.element.first("inertia")
     written = {} if element is None else element.attributes

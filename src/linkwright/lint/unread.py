@@ -1,4 +1,4 @@
-"""Elements and attributes that no program reads, and the names that were probably intended."""
+"""Elements and attributes that no URDF reader uses, and the names probably intended."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ _OTHER_ATTRIBUTES = {
 
 
 def _parents_by_tag() -> dict[str, tuple[str, ...]]:
-    """Return the elements in which each tag is read, by tag."""
+    """Return the elements that may contain each element, by tag."""
     homes: dict[str, dict[str, None]] = {}
     waiting: list[ElementRule] = [schema.ROBOT]
     while waiting:
@@ -62,7 +62,7 @@ HOMES = _parents_by_tag()
 
 
 def _attributes() -> frozenset[str]:
-    """Return the attributes that some element of URDF has."""
+    """Return the names of all attributes of URDF elements."""
     found: set[str] = set()
     waiting: list[ElementRule] = [schema.ROBOT]
     while waiting:
@@ -81,26 +81,29 @@ _EXPECTED_ATTRIBUTES = (
 
 
 def is_expected_element(tag: str) -> bool:
-    """Return whether an author expects an element to have an effect, because related formats use its name.
+    """Return whether authors expect an element to have an effect, because its name is known.
 
-    These are URDF and the formats around it. Any other name is a private extension, such as one that a vendor's
-    software reads.
+    Known names are those of URDF and of related formats. Any other name is a private extension, such as one that a
+    vendor's software reads.
     """
     return tag in _EXPECTED_ELEMENTS or not HOMES.keys().isdisjoint(words_of(tag))
 
 
 def is_expected_attribute(name: str) -> bool:
-    """Return whether an author expects an attribute to have an effect, as URDF uses such a name."""
+    """Return whether authors expect an attribute to have an effect, because its name is known."""
     return name.casefold() in _EXPECTED_ATTRIBUTES
 
 
 def hints_of_reader(subject: Subject) -> dict[Span | None, str]:
-    """Return the URDF reader's hints about misspelt words, by place."""
+    """Return the hints of the URDF reader's diagnostics, by location.
+
+    A diagnostic without a hint has an empty text.
+    """
     return {found.span: found.hint or "" for found in subject.reading.diagnostics}
 
 
 def meant_element(rule: ElementRule, child: Element) -> str | None:
-    """Return the element that an unknown one probably means, or None."""
+    """Return the allowed element that was probably intended by an unknown one, or None."""
     if child.tag in HOMES:
         return None
     known = [child.tag for child in rule.children]
@@ -118,7 +121,7 @@ def is_misspelt(name: str, meant: str) -> bool:
 
 
 def meant_attribute(place: Place, attribute: str) -> str | None:
-    """Return the missing attribute that an unknown one probably means, or None."""
+    """Return the absent attribute that was probably intended by an unknown one, or None."""
     known = [rule.name for rule in place.rule.attributes if rule.name not in place.element.attributes]
     other = _OTHER_ATTRIBUTES.get(attribute.casefold())
     if other in known:
@@ -127,12 +130,12 @@ def meant_attribute(place: Place, attribute: str) -> str | None:
 
 
 def location_phrase(place: Place) -> str:
-    """Return the text that names an element as the location of another element in a message."""
+    """Return the text by which a message names an element as the location of another element."""
     return "<robot>" if place.rule is schema.ROBOT else str(place)
 
 
 def attribute_name_span(element: Element, attribute: str) -> Span | None:
-    """Return the place of an attribute's name in the source."""
+    """Return the location of an attribute's name in the source, or None if it is not found."""
     from linkwright.xmltree.positions import attribute_name_range
 
     source = element.source

@@ -1,4 +1,4 @@
-"""Iteration over descriptions for rules: every joint with its parts."""
+"""Iteration over descriptions for rules: joints and their elements."""
 
 from __future__ import annotations
 
@@ -16,14 +16,17 @@ if TYPE_CHECKING:
 
 
 def joints(subject: Subject) -> Iterator[tuple[Joint, Element]]:
-    """Yield the joints with their elements, in file order."""
+    """Yield the joints with their elements, in source order."""
     for joint in subject.joints:
         if joint.element is not None:
             yield joint, joint.element
 
 
 def parts(subject: Subject, tag: str) -> Iterator[tuple[Joint, Element, Element]]:
-    """Yield each joint with a part of a tag, its element, and the first such part, which is the one read."""
+    """Yield each joint that has a child element with a tag, with its own element and the child.
+
+    Only the first such child is yielded, because readers use only this one.
+    """
     for joint, element in joints(subject):
         part = element.first(tag)
         if part is not None:
@@ -34,9 +37,9 @@ _SIMULATORS = lazy_pattern(r"gz|gazebo|ign|mujoco|webots|isaac|unity|drake|bulle
 
 
 def is_for_simulation(subject: Subject) -> bool:
-    """Return whether a description is for simulation: it has elements for Gazebo or a simulator's plugin.
+    """Return whether a description has elements for Gazebo, or the plugin of a simulator.
 
-    Mock hardware, such as ``mock_components/GenericSystem``, needs no physics.
+    Mock hardware, such as ``mock_components/GenericSystem``, does not count, because it needs no physics.
     """
     plugins = (
         plugin.text()
@@ -56,7 +59,7 @@ UNBOUNDED = 1000.0
 
 
 def limits(subject: Subject, *types: str) -> Iterator[tuple[Joint, Element]]:
-    """Yield the joints of some types that have a ``<limit>``, each with its limit."""
+    """Yield the joints of some types that have a ``<limit>``, each with this element."""
     for joint, _, limit in parts(subject, "limit"):
         if joint.type in types:
             yield joint, limit
@@ -72,7 +75,7 @@ def bounds(limit: Element) -> tuple[float, float] | None:
 
 
 def value(element: Element, attribute: str) -> float | None:
-    """Return the value of an attribute as a number; None if it is absent or not a number."""
+    """Return the value of an attribute as a number, or None if it is absent or not a number."""
     text = element.attributes.get(attribute)
     if text is None:
         return None
@@ -83,7 +86,7 @@ def value(element: Element, attribute: str) -> float | None:
 
 
 def values(element: Element, attribute: str) -> tuple[float, ...]:
-    """Return the values of an attribute as numbers; empty if it is absent or one value is not a number."""
+    """Return the numbers in an attribute; empty if it is absent or contains another word."""
     text = element.attributes.get(attribute)
     if text is None:
         return ()
@@ -94,5 +97,5 @@ def values(element: Element, attribute: str) -> tuple[float, ...]:
 
 
 def format_number(number: float) -> str:
-    """Format a number for messages and hints."""
+    """Return a number as text for messages and hints."""
     return f"{number:.6g}"

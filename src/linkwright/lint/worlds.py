@@ -1,4 +1,4 @@
-"""Findings on worlds and models that can be read.
+"""Findings on worlds and models in SDF.
 
 Checks that also exist for robots use the same rule, code and message.
 """
@@ -47,7 +47,7 @@ _ZERO_MASS, _NEGATIVE_MASS = ZeroMass(), NegativeMass()
 
 
 def check_sdf(sdf: Sdf, finder: ResourceFinder) -> Iterator[Diagnostic]:
-    """Yield the findings on a file with its includes resolved, once for each place in the files.
+    """Yield the findings on a file with its includes resolved, once for each location.
 
     Args:
         sdf: the file.
@@ -65,9 +65,10 @@ def check_sdf(sdf: Sdf, finder: ResourceFinder) -> Iterator[Diagnostic]:
 
 
 def one_for_each_world(found: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Merge the findings on missing models of a world, and on their meshes, into one with notes.
+    """Merge the findings on missing models and meshes of a world into one with notes.
 
-    Files that Gazebo downloads itself need no fix, and have separate findings.
+    Findings with different codes or severities are not merged. For example, files that Gazebo downloads itself need no
+    fix.
     """
     kept: list[Diagnostic] = []
     groups: dict[tuple[str, Severity], list[Diagnostic]] = {}
@@ -85,9 +86,9 @@ def one_for_each_world(found: Iterable[Diagnostic]) -> list[Diagnostic]:
 
 
 def for_classic(found: Iterable[Diagnostic], path: Path) -> Iterator[Diagnostic]:
-    """Yield the findings on a world, adapted to Gazebo classic if its package is for that.
+    """Yield the findings on a world, adapted if its package is for Gazebo classic.
 
-    A construct that only gz refuses becomes an information there.
+    A warning about a construct that only gz refuses then becomes an information.
     """
     package = find_package(path.absolute().parent)
     manifest = None if package is None else package.manifest
@@ -119,9 +120,10 @@ def _model(model: Model, *, static: bool) -> Iterator[Diagnostic]:
 
 
 def _axes(models: Iterable[Model]) -> Iterator[Diagnostic]:
-    """Yield findings on axes without a direction; those of fixed joints are combined.
+    """Yield the findings on axes without a direction.
 
-    Gazebo classic saves all fixed joints in this way, and gz refuses them.
+    The findings on fixed joints are merged into one. Gazebo classic writes such axes for all fixed joints, and gz
+    refuses them.
     """
     fixed: dict[object, Diagnostic] = {}
     pending = [*models]
@@ -151,7 +153,7 @@ def _axes_of(model: Model) -> Iterator[tuple[Joint, Axis | None, str]]:
 
 
 def _missing_meshes(models: Iterable[Model], finder: ResourceFinder) -> Iterator[Diagnostic]:
-    """Yield findings on missing meshes and heightmaps, each URI once."""
+    """Yield a finding for each URI of a missing mesh or heightmap."""
     known: set[str] = set()
     for shape in (shape for model in models for shape in shapes_of(model)):
         geometry, element = shape.geometry, shape.element
@@ -174,7 +176,7 @@ def _missing_meshes(models: Iterable[Model], finder: ResourceFinder) -> Iterator
 
 
 def _inertial(link: Link, inertial: Inertial) -> Iterator[Diagnostic]:
-    """Yield the findings that a robot's inertial would have, and one on non-finite values."""
+    """Yield the findings of the rules for robots' inertials, and one on non-finite values."""
     tensor = inertial.inertia
     found = urdf.Inertial(
         inertial.mass,

@@ -1,7 +1,7 @@
 """The definitions and uses in the unexpanded xacro files of a description.
 
-Nothing is evaluated, so branches that are not taken and macros that are not called count, too. Names are matched
-without regard to scopes: xacro's scopes are dynamic, and a rule that calls something unused must be sure.
+Expressions are not evaluated. Therefore, branches that are not taken and macros that are not called count, too. Names
+are matched without regard to scopes, because xacro's scopes are dynamic and a rule about unused names must be sure.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class Definition:
     """A definition of a property, argument or macro, or an include.
 
     Attributes:
-        name: the defined name; for an include, its file name as written.
+        name: the defined name or, for an include, the file name as written.
         element: the defining element.
         parents: the enclosing elements, outermost first.
         order: the index of the element among all elements of the file.
@@ -67,7 +67,10 @@ class Definition:
 
 @dataclass(frozen=True)
 class Use:
-    """A text that mentions names: an attribute of an element, or (None) its character data."""
+    """A text that mentions names.
+
+    The text is an attribute of an element or, if `attribute` is None, the character data of the element.
+    """
 
     element: Element
     attribute: str | None
@@ -93,9 +96,9 @@ class FileFacts:
     """The definitions and uses in one file.
 
     Attributes:
-        names: every name that its expressions or pasted values mention.
-        called: the names of the macros that it calls, without prefix and namespace.
-        calls_open: whether it calls a macro whose name is computed.
+        names: all names that the expressions or substituted values of the file mention.
+        called: the names of the macros that the file calls, without prefix and namespace.
+        calls_open: whether the file calls a macro whose name is computed.
     """
 
     document: Document
@@ -117,22 +120,22 @@ class FileFacts:
 
     @cached_property
     def has_bare_tags(self) -> bool:
-        """Whether there are xacro tags without the prefix, which xacro does not evaluate (LW720)."""
+        """Whether there are xacro tags without the prefix, which xacro does not process (LW720)."""
         return any(element.tag in _BARE for element in self.document.root.walk())
 
     @cached_property
     def calls_by_macro(self) -> Mapping[int, Sequence[Definition]]:
-        """The calls inside each macro, by the identity of the macro's element."""
+        """The macro calls inside each macro, by the `id` of the macro's element."""
         return _by_macro(self.calls)
 
     @cached_property
     def uses_by_macro(self) -> Mapping[int, Sequence[Use]]:
-        """The names used in each macro, by the identity of the macro's element."""
+        """The texts inside each macro that mention names, by the `id` of the macro's element."""
         return _by_macro(self.uses)
 
     @cached_property
     def uses_of_parameters(self) -> Mapping[int, Sequence[Use]]:
-        """The names used in the parameters of each macro, by the identity of the macro's element."""
+        """The parameter lists of macros that mention names, by the `id` of the macro's element."""
         found: dict[int, list[Use]] = {}
         for use in self.uses:
             if use.attribute == "params":
@@ -141,7 +144,7 @@ class FileFacts:
 
     @cached_property
     def macros_by_name(self) -> Mapping[str, Sequence[Definition]]:
-        """The macros with each name."""
+        """The definitions of macros, by name."""
         found: dict[str, list[Definition]] = {}
         for macro in self.macros:
             found.setdefault(macro.name, []).append(macro)
@@ -149,7 +152,7 @@ class FileFacts:
 
     @classmethod
     def of(cls, document: Document) -> FileFacts:
-        """Return the facts of a parsed file, computed once even if it is checked with many sets of arguments."""
+        """Return the facts about a parsed file, computed once for all argument sets."""
         facts = _CACHE.values.get(id(document))
         if facts is None:
             facts = cls(document)
@@ -262,11 +265,11 @@ class XacroFacts:
 
     Attributes:
         path: the checked file.
-        given: name -> final value of every argument that was passed or declared.
+        given: the final value of every argument that was passed or declared, by name.
         package: the package of the file, or None.
-        is_library: whether the file does not describe a robot, but is meant to be included by others.
-        files: path -> facts, the checked file first.
-        found: code -> findings of the rules that depend on these facts only (`Rule.of_sources`) and have run already.
+        is_library: whether the file does not describe a robot, but is intended for inclusion by others.
+        files: the facts about each file, by path, starting with the checked file.
+        found: the findings of the rules that depend only on these facts (`Rule.of_sources`) and have run, by code.
     """
 
     def __init__(
@@ -287,12 +290,12 @@ class XacroFacts:
 
     @property
     def main(self) -> FileFacts:
-        """The facts of the checked file."""
+        """The facts about the checked file."""
         return next(iter(self.files.values()))
 
     @cached_property
     def own(self) -> Mapping[Path, FileFacts]:
-        """The files that belong to the author of the checked file: those of its package, or else of its folder."""
+        """The facts about the files in the same package, or else in the same folder, by path."""
         package = self.package
         folder = (package.folder if package else self.path.parent).absolute()
         main = next(iter(self.files))
@@ -300,7 +303,10 @@ class XacroFacts:
 
     @cached_property
     def neighbours(self) -> Mapping[Path, FileFacts]:
-        """The other description files of the same package (or folder), which may use these definitions."""
+        """The facts about other description files of the package or folder, by path.
+
+        Such a file may use definitions of this description.
+        """
         package = self.package
         documents = _descriptions_beside(self.path) if package is None else package.descriptions
         known = {path.absolute() for path in self.files}
@@ -308,7 +314,7 @@ class XacroFacts:
 
     @cached_property
     def pastes(self) -> bool:
-        """Whether an expression contains a substituted value, so that values of arguments may become names."""
+        """Whether arguments are substituted into expressions, so that values may become names."""
         return any(facts.pasted for facts in self._all())
 
     @cached_property
@@ -324,7 +330,7 @@ class XacroFacts:
 
     @cached_property
     def used_arguments(self) -> frozenset[str]:
-        """All arguments that a file or a neighbour uses."""
+        """The names of all arguments that a file or a neighbour uses."""
         return frozenset(name for facts in self._all() for name in facts.used_arguments)
 
     @cached_property
@@ -334,22 +340,22 @@ class XacroFacts:
 
     @cached_property
     def is_open(self) -> bool:
-        """Whether a property may be used by a computed name, or in a file that was not read."""
+        """Whether a property may be used through a computed name, or in a file that was not read."""
         return any(facts.is_open for facts in self._all()) or self._misses_files
 
     @cached_property
     def arguments_open(self) -> bool:
-        """Whether an argument may be used by a computed name, or in a file that was not read."""
+        """Whether an argument may be used through a computed name, or in a file that was not read."""
         return any(facts.arguments_open for facts in self._all()) or self._misses_files
 
     @cached_property
     def calls_open(self) -> bool:
-        """Whether a macro may be called by a computed name, or in a file that was not read."""
+        """Whether a macro may be called through a computed name, or in a file that was not read."""
         return any(facts.calls_open for facts in self._all()) or self._misses_files
 
     @cached_property
     def _misses_files(self) -> bool:
-        """Whether a branch that is not taken includes an unknown file."""
+        """Whether a branch that is not taken includes a file that was not read."""
         known = {path.name for path in self.files} | {path.name for path in self.neighbours}
         for facts in self.files.values():
             for include in facts.includes:
@@ -367,12 +373,12 @@ class XacroFacts:
 
 
 def is_global(name: str) -> bool:
-    """Return whether xacro provides a name that properties can hide, such as ``pi``."""
+    """Return whether xacro provides a name, such as ``pi``, that a property could hide."""
     return name in MATHEMATICS
 
 
 def parameter_span(macro: Element, parameter: Parameter) -> Span | None:
-    """Return the place of a parameter's name in the definition of a macro, or None if it is not found."""
+    """Return the location of a parameter's name in a macro's definition, or None."""
     source = macro.source
     if source is None:
         return None

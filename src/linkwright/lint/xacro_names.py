@@ -1,7 +1,8 @@
-"""Find the properties, arguments and packages that a text uses, without evaluating it.
+"""The properties, arguments and packages that a text uses, found without evaluating it.
 
-They are used in ``${...}`` and ``$(...)``. The lexer is that of the xacro room, and Python parses the expressions.
-A text that composes a name from values is *open*: the names that it uses are unknown before it is evaluated.
+Names are used in ``${...}`` and ``$(...)``. The lexer is that of the xacro room, and Python's `ast` parses the
+expressions. A text that composes a name from values is *open*: the names that it uses are not known before the
+evaluation.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ DEPRECATED = {
 
 @dataclass(frozen=True, slots=True)
 class BareCall:
-    """A call of a function by its deprecated bare name, with the offset of the name in the text."""
+    """A call of a function by its deprecated bare name, with the offset of the name."""
 
     name: str
     offset: int
@@ -41,10 +42,10 @@ class Mentions:
     """The names that a text mentions.
 
     Attributes:
-        names: the names in its expressions.
+        names: the names in the expressions of the text.
         arguments: the names of the arguments that the text uses.
-        pasted: those arguments whose value becomes part of an expression's source.
-        packages: package -> offset in the text of ``$(find package)``.
+        pasted: the subset of `arguments` whose values are substituted into an expression.
+        packages: the offset of ``$(find package)`` in the text, by package.
         is_open: whether names are composed from values.
         arguments_open: whether names of arguments are composed from values.
         bare_calls: the calls of functions by a deprecated name.
@@ -68,7 +69,7 @@ def mentions(text: str) -> Mentions:
 
 
 def is_constant(text: str) -> bool:
-    """Return whether a text has the same value everywhere, because it mentions no names."""
+    """Return whether a text has the same value in every scope, because it mentions no names."""
     found = mentions(text)
     return not (found.names or found.arguments or found.packages or found.is_open or found.arguments_open) and (
         "$(env" not in text and "$(optenv" not in text and "$(cwd" not in text and "$(dirname" not in text
@@ -158,7 +159,7 @@ class _Gathered:
         if _PASTED not in name:
             self.names.add(name)
         elif name.startswith(_PASTED) and name[len(_PASTED) :] in self.arguments:
-            self.pasted.add(name[len(_PASTED) :])  # the whole name is the value of an argument
+            self.pasted.add(name[len(_PASTED) :])  # the value of an argument is the whole name
         else:
             self.is_open = True
 
@@ -204,7 +205,7 @@ def _parsed(source: str) -> ast.expr | None:
 
 
 def _bound(tree: ast.expr) -> Iterator[str]:
-    """Yield the names that an expression itself binds, in lambdas and comprehensions."""
+    """Yield the names that an expression binds itself, in lambdas and comprehensions."""
     for node in ast.walk(tree):
         if isinstance(node, ast.arg):
             yield node.arg

@@ -1,4 +1,7 @@
-"""ROS 2 messages, services and actions: classes created from their definitions, and their bytes, hashes and texts."""
+"""ROS 2 messages, services and actions: classes, serialization, type hashes and texts.
+
+The classes are created from the definitions of the interfaces.
+"""
 
 from typing import TYPE_CHECKING
 

@@ -1,8 +1,9 @@
-"""The interfaces that come with Linkwright: those of ROS 2 Humble, as one text file for each package in ``data/``.
+"""The interfaces that come with Linkwright: those of ROS 2 Humble.
 
-A file contains the interface files of its package, each after a line such as ``=== msg/JointState``. The comments are
-our own; rarely used types have none. A file is read when the first of its interfaces is requested. A heading with
-``jazzy`` after the name begins the form of later distributions, which is used if ``ROS_DISTRO`` names one of them.
+Each package has one text file in ``data/`` with its interface files, each after a line such as ``=== msg/JointState``.
+The comments are our own; rarely used types have none. A file is read when the first of its interfaces is requested. A
+heading with ``jazzy`` after the name begins the form of later distributions, which is used if ``ROS_DISTRO`` names one
+of them.
 """
 
 from __future__ import annotations
@@ -24,7 +25,10 @@ def packages() -> tuple[str, ...]:
 
 
 def texts(package: str) -> dict[str, str]:
-    """Return the interface files of a package, such as ``msg/JointState`` -> text; empty for an unknown package."""
+    """Return the texts of a package's interface files by name, such as ``msg/JointState``.
+
+    The dictionary is empty for an unknown package.
+    """
     return _texts(package, not is_before_iron())
 
 

@@ -1,12 +1,12 @@
-"""Checks of values assigned to fields, with the rules and messages of rosidl_generator_py's classes (Humble).
+"""Checks of values assigned to fields, as in rosidl_generator_py's classes (Humble).
 
 The setters that `linkwright.messages.classes` compiles test for the usual case themselves and call these functions for
-all others. The functions return the value to store, or raise the AssertionError that users of rclpy know. Unlike in
-rclpy, numpy arrays and byte buffers may be assigned to sequences of numbers and bools, unless a program accepts only
-what ROS accepts (`keep_to_ros`).
+all other cases. The functions return the value to store, or raise an AssertionError with the message known from rclpy.
+Unlike in rclpy, numpy arrays and byte buffers may be assigned to sequences of numbers and bools, unless a program
+accepts only what ROS accepts (`keep_to_ros`).
 
-numpy is imported only for fixed arrays of numbers, which are stored as numpy arrays: importing it takes longer than the
-rest of a command such as ``topic list``. A program that never imported numpy has no values of its types.
+numpy is imported only for fixed arrays of numbers, which are stored as numpy arrays, because importing it takes longer
+than the rest of a command such as ``topic list``. A program that never imported numpy has no values of numpy's types.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class Unset:
-    """The marker for an argument that was not given."""
+    """The default of a constructor's arguments, to recognise an argument that was not given."""
 
     def __repr__(self) -> str:
         return "default"
@@ -43,8 +43,8 @@ def keep_to_ros(*, as_humble: bool) -> None:
     """Make this process accept only values that the classes of ROS 2 accept.
 
     Args:
-        as_humble: whether constructors convert the values given for fixed arrays, as up to Humble, instead of checking
-            them.
+        as_humble: whether constructors convert the values given for fixed arrays, as in Humble and earlier, instead of
+            checking them.
     """
     global _keeps_to_ros, _fixed_as_humble
     _keeps_to_ros, _fixed_as_humble = True, as_humble
@@ -56,7 +56,10 @@ def refuse_arguments(names: Iterable[str]) -> NoReturn:
 
 
 def check_int(name: str, value: Any, low: int, high: int) -> int:
-    """Check the type and the range of an integer; bools are accepted, numpy's integers are not (as in rclpy)."""
+    """Check an integer and its range.
+
+    As in rclpy, bools are accepted and numpy's integers are not.
+    """
     if not isinstance(value, int):
         raise AssertionError(f"The '{name}' field must be of type 'int'")  # noqa: TRY004 - rclpy\'s
     if not low <= value <= high:
@@ -66,7 +69,10 @@ def check_int(name: str, value: Any, low: int, high: int) -> int:
 
 
 def check_float(name: str, value: Any, high: float) -> float:
-    """Check the type and the range of a float; integers are not accepted (as in rclpy)."""
+    """Check a float and its range.
+
+    As in rclpy, integers are not accepted.
+    """
     if not isinstance(value, float):
         raise AssertionError(f"The '{name}' field must be of type 'float'")  # noqa: TRY004 - rclpy\'s
     if (value < -high or value > high) and not math.isinf(value):
@@ -76,21 +82,21 @@ def check_float(name: str, value: Any, high: float) -> float:
 
 
 def check_bool(name: str, value: Any) -> bool:
-    """Check a bool."""
+    """Check that a value is a bool."""
     if not isinstance(value, bool):
         raise AssertionError(f"The '{name}' field must be of type 'bool'")  # noqa: TRY004 - rclpy\'s
     return value
 
 
 def check_byte(name: str, value: Any) -> bytes:
-    """Check bytes of length 1."""
+    """Check that a value is a bytes object of length 1."""
     if not (isinstance(value, (bytes, bytearray)) and len(value) == 1):
         raise AssertionError(f"The '{name}' field must be of type 'bytes' or 'ByteString' with length 1")
     return bytes(value)
 
 
 def check_text(name: str, value: Any, bound: int | None) -> str:
-    """Check a string and its bound."""
+    """Check that a value is a string within its bound."""
     if bound is None:
         if not isinstance(value, str):
             raise AssertionError(f"The '{name}' field must be of type 'str'")
@@ -100,14 +106,14 @@ def check_text(name: str, value: Any, bound: int | None) -> str:
 
 
 def check_message(name: str, value: Any, cls: type) -> Any:
-    """Check a message of the field's class."""
+    """Check that a value is a message of the field's class."""
     if not isinstance(value, cls):
         raise AssertionError(f"The '{name}' field must be a sub message of type '{cls.__name__}'")  # noqa: TRY004 - rclpy\'s
     return value
 
 
 def check_values(name: str, value: Any, kind: FieldType, cls: type) -> Any:
-    """Check a list of bools, bytes, strings or messages; the list itself is stored."""
+    """Check a list of bools, bytes, strings or messages, and return the list itself."""
     if cls is bool and not _keeps_to_ros and is_array(value) and value.dtype.kind == "b":
         value = value.ravel().tolist()
     if not (
@@ -121,7 +127,7 @@ def check_values(name: str, value: Any, kind: FieldType, cls: type) -> Any:
 
 
 def check_fixed_array(name: str, value: Any, kind: FieldType) -> NDArray[Any]:
-    """Check an array of numbers of fixed length, which is stored as a numpy array."""
+    """Check a fixed-length array of numbers, and return it as a numpy array."""
     import numpy as np
 
     primitive = cast(Primitive, kind.primitive)
@@ -135,7 +141,10 @@ def check_fixed_array(name: str, value: Any, kind: FieldType) -> NDArray[Any]:
 
 
 def check_sequence(name: str, value: Any, kind: FieldType) -> array[Any]:
-    """Check a sequence of numbers, which is stored as an ``array.array``; an array of the right type is not copied."""
+    """Check a sequence of numbers, and return it as an ``array.array``.
+
+    An array of the right type is returned without a copy.
+    """
     primitive = cast(Primitive, kind.primitive)
     assert primitive.array_code is not None
     if isinstance(value, array):
@@ -154,7 +163,10 @@ def check_sequence(name: str, value: Any, kind: FieldType) -> array[Any]:
 
 
 def made_sequence(name: str, value: Any, kind: FieldType) -> array[Any]:
-    """Convert numbers for a constructor, which accepts integers for floats as in rclpy."""
+    """Convert numbers given to a constructor to an ``array.array``.
+
+    As in rclpy, a constructor accepts integers for floats.
+    """
     primitive = cast(Primitive, kind.primitive)
     code = primitive.array_code
     assert code is not None
@@ -168,7 +180,7 @@ def made_sequence(name: str, value: Any, kind: FieldType) -> array[Any]:
 
 
 def made_fixed_array(name: str, value: Any, kind: FieldType) -> NDArray[Any]:
-    """Convert numbers for a fixed array in a constructor."""
+    """Convert numbers given to a constructor to a numpy array of fixed length."""
     import numpy as np
 
     primitive = cast(Primitive, kind.primitive)
@@ -185,7 +197,7 @@ def made_fixed_array(name: str, value: Any, kind: FieldType) -> NDArray[Any]:
     return made
 
 
-# --- numpy's values, recognised without importing it ---------------------------------------------------------------
+# --- values of numpy, recognised without importing numpy ------------------------------------------------------------
 
 
 def is_array(value: Any) -> TypeGuard[NDArray[Any]]:
@@ -205,7 +217,7 @@ def ndarray_class() -> type[NDArray[Any]] | None:
     return getattr(sys.modules.get("numpy"), "ndarray", None)
 
 
-# --- parts of the checks --------------------------------------------------------------------------------------------
+# --- helpers of the checks ------------------------------------------------------------------------------------------
 
 
 def _is_collection(value: Any) -> bool:
@@ -236,7 +248,7 @@ def _in_range(values: Any, primitive: Primitive) -> bool:
         return True
     if primitive.is_integer:
         return bool(min(values) >= primitive.low and max(values) <= primitive.high)
-    if primitive.array_code == "d":  # accepts everything that is a float in Python
+    if primitive.array_code == "d":  # "d" accepts every float of Python
         return True
     return all(-primitive.high <= value <= primitive.high or not math.isfinite(value) for value in values)
 
@@ -266,7 +278,7 @@ def _from_buffer(name: str, value: bytes | bytearray | memoryview, kind: FieldTy
 
 
 def _wanted(kind: FieldType, python: type) -> str:
-    """Return the description of a valid value for a field with several values, in rclpy's words."""
+    """Return the description of a valid value for an array or sequence, in rclpy's wording."""
     words = ["a set or sequence"]
     if kind.container is Container.ARRAY:
         words.append(f"with length {kind.size}")

@@ -1,4 +1,4 @@
-"""Create the classes of messages, services and actions from generated code, each on first use.
+"""Creates the classes of messages, services and actions from generated code, on first use.
 
 The code of a message class has a constructor and setters that are as short as its fields allow. They test for the usual
 case inline (``value.__class__ is float``) and leave all other cases to `linkwright.messages.checks`. The property of a
@@ -37,12 +37,12 @@ def build_class(structure: Structure, base: type, classes: dict[str, type], modu
     """Build the class of a structure.
 
     Args:
-        structure: its definition.
-        base: its base class.
-        classes: type name -> class, for every structure that its fields use.
-        module: the name of its module.
+        structure: the definition of the structure.
+        base: the base class.
+        classes: the class of every structure that the fields use, by type name.
+        module: the name of the module of the class.
     """
-    # These names have capital letters, which field names do not have.
+    # The names are in upper case, which field names never are.
     scope: dict[str, Any] = {
         "U": checks.UNSET,
         "Checks": checks,
@@ -83,7 +83,7 @@ def build_class(structure: Structure, base: type, classes: dict[str, type], modu
 
 
 class _FieldCode:
-    """The code for one field."""
+    """Generates the code for one field."""
 
     def __init__(self, field: Field, classes: dict[str, type], scope: dict[str, Any]) -> None:
         self.field = field
@@ -100,11 +100,11 @@ class _FieldCode:
         return f"Message field '{self.name}'."
 
     def parameter(self) -> str:
-        # A field may have the name of a Python keyword, such as 'from'; it is then set through **other.
+        # A field may have the name of a Python keyword, such as 'from', which must be given through **other.
         return "" if keyword.iskeyword(self.name) else f"{self.name}=U, "
 
     def initial(self) -> str:
-        """Return the constructor's lines for this field."""
+        """Return the constructor's lines of code for this field."""
         name = argument = self.name
         lines = ""
         if keyword.iskeyword(name):
@@ -114,7 +114,7 @@ class _FieldCode:
         if self.kind.is_numeric_array:
             made = "made_fixed_array" if self.kind.container is Container.ARRAY else "made_sequence"
             return lines + f"    else: M._{name} = Checks.{made}({name!r}, {argument}, K_{name})\n"
-        if self._is_plain():  # as in the setter, without the call
+        if self._is_plain():  # as in the setter, but without calling it
             lines += f"    elif {self._usual(argument)}: M._{name} = {argument}\n"
         return lines + f"    else: S_{name}(M, {argument})\n"
 
@@ -154,13 +154,13 @@ class _FieldCode:
         return f"    if not ({self._usual('value')}): value = Checks.{check}\n"
 
     def _usual_length(self) -> str:
-        """Return the expression that tests the number of values against a bound."""
+        """Return the expression that tests the number of values; empty if the number is not bounded."""
         if self.kind.size is None:
             return ""
         return f" and len(value) {'==' if self.kind.container is Container.ARRAY else '<='} {self.kind.size}"
 
     def _usual(self, value: str) -> str:
-        """Return the expression that tests for the usual case of a single value, which is stored unchanged."""
+        """Return the expression that tests whether a single value can be stored unchanged."""
         kind, primitive = self.kind, self.kind.primitive
         if primitive is None:
             return f"{value}.__class__ is C_{self.name}"
@@ -181,7 +181,7 @@ class _FieldCode:
         return self.kind.container is Container.ONE
 
     def _default(self) -> Any:
-        """Return the default value of the definition, as the field stores it; None if there is none."""
+        """Return the definition's default value as the field stores it; None if there is none."""
         value = self.field.default
         if value is None or self._is_plain():
             return value
@@ -239,7 +239,9 @@ _WRITTEN_BY_HAND = {"tf2_msgs/msg/TFMessage": "linkwright.messages.tf_message"}
 
 
 def get_message(name: str) -> type[Any]:
-    """Return the class of a message, or of a part of a service or action (``std_srvs/srv/SetBool_Request``).
+    """Return the class of a message, or of a part of a service or action.
+
+    An example of a part is ``std_srvs/srv/SetBool_Request``.
 
     Args:
         name: ``sensor_msgs/msg/JointState`` or ``sensor_msgs/JointState``.
@@ -252,7 +254,10 @@ def get_message(name: str) -> type[Any]:
 
 
 def get_service(name: str) -> type[Any]:
-    """Return the class of a service, with `Request` and `Response`; names and errors are as in `get_message`."""
+    """Return the class of a service, with `Request` and `Response`.
+
+    Names and errors are as in `get_message`.
+    """
     return _named(name, ServiceType, "srv")
 
 
@@ -265,7 +270,10 @@ def get_action(name: str) -> type[Any]:
 
 
 def get_interface(name: str) -> type[Any]:
-    """Return the class of a message, service or action; for ``package/Name``, the first of these that exists."""
+    """Return the class of a message, service or action.
+
+    For ``package/Name``, a message is preferred to a service, and a service to an action.
+    """
     return cast("type[Any]", _classes.get(name) or _made(LIBRARY.definition(name)))
 
 
@@ -282,7 +290,7 @@ def add_class(message_class: type[Message]) -> None:
 def _named(name: str, base: type, kind: str) -> type[Any]:
     found = _classes.get(name)
     if found is None:
-        # Parts of services and actions have the kind in their names: a message may be 'std_srvs/srv/SetBool_Request'.
+        # The kind in a full name is not checked, because a message may be 'std_srvs/srv/SetBool_Request'.
         found = _made(LIBRARY.definition(name, *(() if name.count("/") == 2 else (kind,))))
     if not issubclass(found, base):
         raise InterfaceNotFoundError(wrong_kind_diagnostic(LIBRARY.definition(name), kind))
@@ -310,7 +318,7 @@ def _make(definition: Definition) -> type:
 def _make_message(structure: Structure) -> type:
     parts = {name: _made(LIBRARY.structure(name)) for name in structure.references}
     if structure.type_name in _WRITTEN_BY_HAND:
-        import_module(_WRITTEN_BY_HAND[structure.type_name])  # the module calls `add_class`
+        import_module(_WRITTEN_BY_HAND[structure.type_name])  # importing the module calls `add_class`
         return cast("type", _classes[structure.type_name])
     base = _BASES.get(structure.type_name, Message)
     return build_class(structure, base, parts, python_module(structure.type_name))
@@ -361,7 +369,7 @@ def _make_action(action: Action) -> type:
 
 
 class _LazyClass:
-    """A class attribute whose value is a message class created on first access."""
+    """A class attribute that creates its value, a message class, on first access."""
 
     def __init__(self, structure: Structure) -> None:
         self._structure = structure

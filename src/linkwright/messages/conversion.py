@@ -1,4 +1,4 @@
-"""Convert messages to plain data and to comma-separated values, as rosidl_runtime_py does."""
+"""Converts messages to plain data and to comma-separated values, as rosidl_runtime_py does."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ CUT = "..."
 
 
 class Abridgement(NamedTuple):
-    """How the values of messages are shortened for display.
+    """How values of messages are shortened for display.
 
     Attributes:
         truncate_length: longer strings and lists are cut to this length and end with ``...``; None for no limit.
@@ -28,7 +28,7 @@ class Abridgement(NamedTuple):
     no_str: bool = False
 
     def text(self, text: str) -> str:
-        """Return a string as it is displayed."""
+        """Return a string in the form in which it is displayed."""
         return f"<string length: <{len(text)}>>" if self.no_str else self.cut(text)
 
     def cut(self, text: str) -> str:
@@ -40,15 +40,14 @@ class Abridgement(NamedTuple):
 def to_dict(
     message: Message, *, truncate_length: int | None = None, no_arr: bool = False, no_str: bool = False
 ) -> OrderedDict[str, Any]:
-    """Return the fields of a message as plain values.
+    """Return the fields of a message as plain values, by name.
 
-    These are numbers, bools, strings, lists, and dictionaries for nested messages.
-
-    Bytes become strings of the characters with the same codes (rosidl_runtime_py).
+    The values are numbers, bools, strings, lists, and dictionaries for nested messages. As in rosidl_runtime_py, bytes
+    become strings of the characters with the same codes.
 
     Args:
         message: any message.
-        truncate_length: longer strings and lists are cut to this length and end with ``...``.
+        truncate_length: longer strings and lists are cut to this length and end with ``...``; None for no limit.
         no_arr: whether arrays and sequences are replaced by their type and length.
         no_str: whether strings are replaced by their length.
     """
@@ -89,7 +88,7 @@ def _line(message: Message, shown: Abridgement) -> str:
             words.append(abbreviated(field.type, value))
         else:
             words.append(_csv(value, shown))
-    # A field without values leaves nothing, not even a comma at the beginning of the line.
+    # A field without values contributes nothing, not even a comma at the beginning of the line.
     text = ""
     for word in words:
         text = f"{text},{word}" if text else word
@@ -97,7 +96,7 @@ def _line(message: Message, shown: Abridgement) -> str:
 
 
 def abbreviated(kind: FieldType, value: Any) -> str:
-    """Return the type and length of an array or sequence instead of its values.
+    """Return a text with the type and length of an array or sequence.
 
     An example is ``<sequence type: double, length: 12>``.
     """

@@ -1,4 +1,4 @@
-"""The distribution of ROS 2 to follow where distributions differ."""
+"""The ROS 2 distribution whose behaviour is followed where distributions differ."""
 
 from __future__ import annotations
 
@@ -13,21 +13,27 @@ BEFORE_IRON = ("dashing", "eloquent", "foxy", "galactic", "humble")
 
 
 def is_before_iron(variables: Mapping[str, str] = os.environ) -> bool:
-    """Return whether ``ROS_DISTRO`` names Humble or an earlier distribution; Humble is assumed if it is not set."""
+    """Return whether ``ROS_DISTRO`` names Humble or an earlier distribution.
+
+    If the variable is not set, Humble is assumed.
+    """
     distribution = variables.get("ROS_DISTRO", "").lower()
     return not distribution or distribution in BEFORE_IRON
 
 
 def is_before_kilted(variables: Mapping[str, str] = os.environ) -> bool:
-    """Return whether ``ROS_DISTRO`` names Jazzy or an earlier distribution; Humble is assumed if it is not set."""
+    """Return whether ``ROS_DISTRO`` names Jazzy or an earlier distribution.
+
+    If the variable is not set, Humble is assumed.
+    """
     return is_before_iron(variables) or variables.get("ROS_DISTRO", "").lower() in ("iron", "jazzy")
 
 
 def checks_fields_as_ros(variables: Mapping[str, str] = os.environ) -> bool:
-    """Return whether values of fields are checked as in ROS 2, which accepts fewer values than we do.
+    """Return whether field values are checked as in ROS 2, which accepts fewer values.
 
-    That is the case if the user names Humble or an earlier distribution, or if ``ROS_PYTHON_CHECK_FIELDS`` requests it,
-    as in newer distributions, which otherwise accept any value.
+    This is the case if the user names Humble or an earlier distribution, or if ``ROS_PYTHON_CHECK_FIELDS`` is 1. Newer
+    distributions accept any value unless that variable is set.
     """
     if variables.get("ROS_PYTHON_CHECK_FIELDS") == "1":
         return True

@@ -1,4 +1,4 @@
-"""The errors of this package."""
+"""The errors that are raised for interfaces, message data and field values."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ class InterfaceNotFoundError(LinkwrightError):
 
 
 class DefinitionError(LinkwrightError):
-    """Raised when an interface file cannot be used; it has one diagnostic for each mistake in the file."""
+    """Raised when an interface file has mistakes, with one finding for each."""
 
 
 class MessageDataError(LinkwrightError, ValueError):
-    """Raised when bytes are not a message of the expected type, or a message cannot be serialized."""
+    """Raised when bytes are not a message of a given type, or a message cannot be serialized."""
 
 
 class FieldValueError(LinkwrightError, ValueError):
@@ -30,5 +30,5 @@ class WrongValueError(FieldValueError, TypeError):
 
 
 def data_error(code: str, message: Phrase) -> MessageDataError:
-    """Create the error for bytes that cannot be read, or for a message that cannot be written."""
+    """Create the error for bytes or a message that cannot be deserialized or serialized."""
     return MessageDataError(Diagnostic(code, message))

@@ -1,4 +1,4 @@
-"""Set the fields of a message from plain data, such as the YAML given to ``ros2 topic pub``."""
+"""Sets the fields of a message from plain data, such as the YAML of ``ros2 topic pub``."""
 
 from __future__ import annotations
 
@@ -24,21 +24,21 @@ StampSetter = Callable[[Any], None]
 def set_fields(
     message: Message, values: Mapping[str, Any], *, expand_header_auto: bool = False, expand_time_now: bool = False
 ) -> list[StampSetter]:
-    """Set fields of a message from plain data: numbers, bools, strings, lists, and mappings for nested messages.
+    """Set the fields of a message from numbers, bools, strings, lists and nested mappings.
 
-    A nested message is replaced: fields that are not given get their defaults. An integer is accepted for a float, a
-    number for a string, and a string for a number if it contains one.
+    A nested message is replaced, so that fields that are not given have their defaults. An integer is accepted for a
+    float, a number for a string, and a string for a number if the string contains a number.
 
     Args:
         message: the message to change.
-        values: field name -> value.
+        values: the values by field name.
         expand_header_auto: whether to accept ``auto`` for a Header, whose stamp is then set whenever the message is
             sent.
         expand_time_now: whether to accept ``now`` for a Time, which is then set to the time at which the message is
             sent.
 
     Returns:
-        Functions that set the fields given as ``auto`` or ``now`` to the Time that they are called with.
+        Functions that set the fields given as ``auto`` or ``now`` to the Time with which they are called.
 
     Raises:
         UnknownFieldError: MSG301, a field does not exist; also an AttributeError.
@@ -53,11 +53,11 @@ def set_fields(
 
 
 class _Unfit(Exception):  # noqa: N818 - becomes a diagnostic
-    """Raised when a value does not fit a field; the argument describes a value that would."""
+    """Raised when a value does not fit a field. The argument describes a valid value."""
 
 
 class _Setter:
-    """Sets fields and collects all mistakes."""
+    """Sets fields from plain data, and collects all mistakes."""
 
     def __init__(self, *, expand_header: bool, expand_time: bool) -> None:
         self._expand_header = expand_header
@@ -154,7 +154,7 @@ class _Setter:
 
 
 def _converted(primitive: Primitive, kind: FieldType, value: Any) -> Any:
-    """Convert a value to the field's Python type; the field itself checks ranges and lengths."""
+    """Convert a value to the field's Python type. The field itself checks ranges and lengths."""
     if is_scalar(value):
         value = value.item()
     python = primitive.python

@@ -1,4 +1,4 @@
-"""The base classes of messages, services and actions, and their serialization: CDR as in ROS 2's middlewares."""
+"""The base classes of messages, services and actions, and serialization to CDR as in ROS 2."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 
 def definition_of(message_class: type[Any]) -> Structure:
-    """Return the definition of a message class: its fields, their types, its constants."""
+    """Return the definition of a message class, with its fields and constants."""
     found: Structure = message_class._definition
     return found
 
@@ -32,11 +32,11 @@ class _SlotTypes:
 
 
 class Message:
-    """A ROS 2 message: an object with the fields of its definition, checked on assignment as in rclpy.
+    """A ROS 2 message: an object whose fields are checked on assignment as in rclpy.
 
     The value of field ``x`` is in the slot ``_x`` as in rosidl_generator_py's classes; the property ``x`` gives access
-    to it. A published message is passed to every subscriber in the process without a copy: subscribers may read it but
-    must not change it.
+    to it. A published message is passed to every subscriber in the process without a copy. Subscribers may read the
+    message but must not change it.
     """
 
     __slots__: tuple[str, ...] = ()
@@ -49,12 +49,15 @@ class Message:
 
     _definition: ClassVar[Structure]
 
-    # Functions that create classes; `linkwright.messages.classes` sets them.
+    # Functions that create classes; `linkwright.messages.classes` assigns them.
     _class_named: ClassVar[Callable[[str], type[Any]]]
     _class_of: ClassVar[Callable[[Structure], type[Any]]]
 
     def _write(self) -> bytes:
-        """Serialize the message to CDR; the function for the class is compiled on first use, as for `_read`."""
+        """Serialize the message to CDR with its header.
+
+        As for `_read`, the function for the class is compiled on first use.
+        """
         from linkwright.messages.cdr.writer import compile_writer
 
         cls = type(self)
@@ -63,7 +66,10 @@ class Message:
 
     @classmethod
     def _read(cls, data: bytes) -> Any:
-        """Deserialize a message from bytes with a little-endian header."""
+        """Deserialize a message from bytes with a little-endian header.
+
+        The function for the class is compiled on first use and replaces this method.
+        """
         from linkwright.messages.cdr.reader import compile_reader
 
         reader = compile_reader(cls._definition, cls._class_of)
@@ -95,7 +101,7 @@ class Message:
         for field in self._definition.fields:
             value = getattr(self, field.name)
             text = repr(value)
-            if text.startswith("array('"):  # array('d', [1.0]): show only the list, as rclpy does
+            if text.startswith("array('"):  # For array('d', [1.0]), show only the list, as rclpy does.
                 text = text[len("array('d', ") : -1] if len(value) else "[]"
             values.append(f"{field.name}={text}")
         module = type(self).__module__.rpartition(".")[0]
@@ -106,7 +112,10 @@ class Message:
 
 
 def _remade(type_name: str, values: tuple[Any, ...]) -> Message:
-    """Create a message from its slots' values, for copies and pickles, without importing modules by name."""
+    """Create a message from the values of its slots, for copies and pickles.
+
+    No module needs to be imported by its name.
+    """
     cls = Message._class_named(type_name)
     message: Message = object.__new__(cls)
     for slot, value in zip(cls.__slots__, values, strict=True):
@@ -115,7 +124,7 @@ def _remade(type_name: str, values: tuple[Any, ...]) -> Message:
 
 
 class ServiceType:
-    """A service: the classes of its request and its response; it cannot be instantiated."""
+    """A service: the classes of its request and its response. It cannot be instantiated."""
 
     TYPE_NAME: ClassVar[str]
     Request: ClassVar[type[Any]]
@@ -136,9 +145,9 @@ class ActionImplementation:
     """The services and messages of an action.
 
     Attributes:
-        SendGoalService: requests a goal.
-        GetResultService: responds when a goal has ended.
-        FeedbackMessage: the feedback, and the id of its goal.
+        SendGoalService: the service that accepts goals.
+        GetResultService: the service that responds when a goal has ended.
+        FeedbackMessage: the message with the feedback and the id of its goal.
         CancelGoalService: ``action_msgs/srv/CancelGoal``.
         GoalStatusMessage: ``action_msgs/msg/GoalStatusArray``.
     """
@@ -151,7 +160,7 @@ class ActionImplementation:
 
 
 class ActionType:
-    """An action: the classes of its goal, result and feedback; it cannot be instantiated."""
+    """An action: the classes of its goal, result and feedback. It cannot be instantiated."""
 
     TYPE_NAME: ClassVar[str]
     Goal: ClassVar[type[Any]]
@@ -177,13 +186,13 @@ class _Nanoseconds(Message):
     sec: Any
     nanosec: Any
 
-    if TYPE_CHECKING:  # the constructor is generated
+    if TYPE_CHECKING:  # The constructor is generated at run time.
 
         def __init__(self, sec: int = 0, nanosec: int = 0) -> None: ...
 
     @classmethod
     def from_nanoseconds(cls: type[_Self], nanoseconds: int) -> _Self:  # noqa: PYI019 - Python 3.10 has no Self
-        """Create the message for a number of nanoseconds.
+        """Create the message that represents a number of nanoseconds.
 
         Raises:
             AssertionError: the seconds do not fit into 32 bits.
@@ -229,11 +238,13 @@ _big_readers: dict[str, Any] = {}
 
 
 def serialize(message: Message) -> bytes:
-    """Serialize a message to CDR: header bytes 00 01 00 00, then the fields, without padding at the end.
+    """Serialize a message to CDR.
+
+    The header bytes are 00 01 00 00; the fields follow, without padding at the end.
 
     Raises:
-        MessageDataError: MSG202, a value has the wrong type or is out of range (which happens only if the checks on
-            assignment were bypassed, for example by appending to a list).
+        MessageDataError: MSG202, a value has the wrong type or is out of range. This happens only if the checks on
+            assignment were bypassed, for example by appending to a list.
     """
     try:
         return message._write()
@@ -242,7 +253,9 @@ def serialize(message: Message) -> bytes:
 
 
 def deserialize(data: bytes | bytearray | memoryview, message_class: type[MessageT]) -> MessageT:
-    """Deserialize a message from bytes that include the header; bytes after its end are ignored.
+    """Deserialize a message from bytes with their header.
+
+    Bytes after the end of the message are ignored.
 
     Raises:
         MessageDataError: MSG201, the bytes are not a message of this class.
@@ -306,9 +319,9 @@ def _unwritable(message: object, fault: Exception) -> MessageDataError:
 
 
 def _bad_field(message: Message, path: str) -> str | None:
-    """Return the field whose value could not be assigned now, and the reason.
+    """Return a text about the first field with an invalid value; None if all are valid.
 
-    The reason has the words of the checks on assignment.
+    The wording is that of the checks on assignment.
     """
     for field in definition_of(type(message)).fields:
         here = f"{path}.{field.name}" if path else field.name

@@ -11,7 +11,9 @@ from linkwright.messages.yaml_text import to_yaml
 
 
 def definition_text(interface: Any) -> str:
-    """Return the text of an interface file; the files that come with Linkwright have our own comments.
+    """Return the text of an interface file.
+
+    The comments in files that come with Linkwright are our own.
 
     Args:
         interface: a class, or a type name.
@@ -23,7 +25,7 @@ def definition_text(interface: Any) -> str:
 
 
 def prototype(interface: Any, *, flow_style: bool = False) -> str:
-    """Return the default values of a message, of a service's request, or of an action's goal, as YAML.
+    """Return the default values of a message, a service request or an action goal, as YAML.
 
     Args:
         interface: a class, or a type name.
@@ -41,8 +43,11 @@ def prototype(interface: Any, *, flow_style: bool = False) -> str:
 
 
 def interface_names(kind: str) -> list[str]:
-    """Return the type names of all known messages (``msg``), services (``srv``) or actions (``action``), sorted.
+    """Return the sorted type names of all known interfaces of one kind.
 
-    They are the interfaces that come with Linkwright and those of the packages that the current finder finds.
+    These are the interfaces that come with Linkwright and those of the packages that the current finder finds.
+
+    Args:
+        kind: ``msg``, ``srv`` or ``action``.
     """
     return LIBRARY.names(kind)

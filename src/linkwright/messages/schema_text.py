@@ -1,6 +1,6 @@
 """The definition of a message type, followed by the definitions of the types in it.
 
-The form is MCAP's ``ros2msg`` schema encoding, which rosbag2's SQLite files and Foxglove use too.
+The format is MCAP's ``ros2msg`` schema encoding, which rosbag2's SQLite files and Foxglove use, too.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ _SEPARATOR = "=" * 80
 
 
 def schema_of(type_name: str) -> str:
-    """Return the definitions of a type and of all types in it.
+    """Return the definitions of a type and of all types in it, as MCAP's ``ros2msg`` schema.
 
     Args:
         type_name: the type, such as ``sensor_msgs/msg/JointState``, or the type of a service's events.
@@ -35,7 +35,10 @@ def schema_of(type_name: str) -> str:
 
 
 def _text(type_name: str) -> str:
-    """Return the text of a message; for a request or response, which no file defines, generate it from the fields."""
+    """Return the text of a message definition.
+
+    For a request or response, which no file defines, the text is generated from the fields.
+    """
     if "/msg/" in type_name:
         return definition_text(type_name)
     lines = []
@@ -43,7 +46,7 @@ def _text(type_name: str) -> str:
         base = field.type.base
         package, _, name = base.rpartition("/")
         spelled = field.type.to_msg_text()
-        if "/srv" in package:  # to_msg_text leaves the kind out of the name; requests and responses need it
+        if "/srv" in package:  # `to_msg_text` omits the kind from the name, but requests and responses need it.
             spelled = spelled.replace(f"{package.partition('/')[0]}/{name}", base, 1)
         lines.append(f"{spelled} {field.name}")
     return "\n".join(lines)

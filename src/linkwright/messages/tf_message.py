@@ -2,10 +2,10 @@
 
 Five hundred joints at 30 Hz are 15 000 transforms a second. As message objects they would cost more than everything
 else in the process together. Therefore a `TFMessage` may contain a `TransformBatch`, the same data as names and one
-array, or the bytes that were received; it creates the objects only when they are requested.
+array, or the bytes that were received. It creates the objects only when they are requested.
 
 The bytes of messages with transforms between the same frames differ only in stamps and numbers. A `TransformLayout`
-knows where these are. So a message is written by filling in a template, and a received message is recognised by
+stores the positions of these. So a message is written by filling in a template, and a received message is recognised by
 comparing its other bytes with the template. In both directions a transform takes a few nanoseconds, and no object is
 created for it.
 """
@@ -69,7 +69,7 @@ class TransformLayout:
         self._poses = np.array(poses, dtype=np.intp)[:, None] + np.arange(7)
 
     def with_one_stamp(self, stamp_ns: int, poses: NDArray[np.float64]) -> bytes:
-        """Return the message with these poses and one stamp for all.
+        """Return the bytes of a message with the given poses and one stamp for all.
 
         Args:
             stamp_ns: the stamp, in nanoseconds since the epoch.
@@ -88,7 +88,12 @@ class TransformLayout:
         return self._finished(words, poses)
 
     def with_stamps(self, stamps: Sequence[tuple[int, int]], poses: NDArray[np.float64]) -> bytes:
-        """Return the message with these poses, each with its own stamp in seconds and nanoseconds."""
+        """Return the bytes of a message with the given poses, each with its own stamp.
+
+        Args:
+            stamps: the seconds and nanoseconds of each stamp.
+            poses: array, shape (n, 7), of x y z qx qy qz qw.
+        """
         words = self._words.copy()
         words.view(np.uint32)[self._stamps] = np.array([sec for sec, _ in stamps], np.int32).view(np.uint32)
         words.view(np.uint32)[self._stamps + 1] = np.array([nanosec for _, nanosec in stamps], np.uint32)
@@ -99,7 +104,7 @@ class TransformLayout:
         return _HEADER + words.tobytes()[: self.length - len(_HEADER)]
 
     def register(self) -> None:
-        """Register this layout, so that received messages are compared with it."""
+        """Register this layout, with which received messages of the same length are then compared."""
         same_length = _by_length.setdefault(self.length, [])
         if self not in same_length:
             if len(_by_length) > _MOST_KEPT:
@@ -109,16 +114,20 @@ class TransformLayout:
             _by_length[self.length] = same_length
 
     def fits(self, words: NDArray[np.uint64]) -> bool:
-        """Return whether a message's words, without its header, have these frames, with any stamps and numbers."""
+        """Return whether a message has the frames of this layout, with any stamps and numbers.
+
+        Args:
+            words: the message without its header.
+        """
         return not ((words ^ self._words) & self._mask).any()
 
     def poses_in(self, words: NDArray[np.uint64]) -> NDArray[np.float64]:
-        """Return the poses in a message, shape (n, 7)."""
+        """Return the poses in a message: array, shape (n, 7), of x y z qx qy qz qw."""
         poses: NDArray[np.float64] = words.view(np.float64)[self._poses]
         return poses
 
     def stamps_in(self, words: NDArray[np.uint64]) -> NDArray[np.int64]:
-        """Return the stamps in a message, in nanoseconds since the epoch."""
+        """Return the stamp of each transform in a message, in nanoseconds since the epoch."""
         stamps = words.view(np.int32)[self._stamps].astype(np.int64)
         stamps *= NANOSECONDS_PER_SECOND
         stamps += words.view(np.uint32)[self._stamps + 1]
@@ -129,9 +138,9 @@ class ReceivedTransforms(NamedTuple):
     """A received message and its layout.
 
     Attributes:
-        layout: the positions of the values.
-        data: the message, including the header.
-        words: the message without its header.
+        layout: the positions of stamps and poses.
+        data: the bytes of the message, including the header.
+        words: the message without its header, as unsigned 64-bit integers.
     """
 
     layout: TransformLayout
@@ -153,7 +162,7 @@ class ReceivedTransforms(NamedTuple):
 
 
 def layout_for(parents: tuple[str, ...], children: tuple[str, ...]) -> TransformLayout:
-    """Return the layout of a message with these frames; cached."""
+    """Return the layout of messages with the given frames, which is cached."""
     key = (parents, children)
     layout = _layouts.get(key)
     if layout is None:
@@ -164,7 +173,9 @@ def layout_for(parents: tuple[str, ...], children: tuple[str, ...]) -> Transform
 
 
 def matching_layout(data: bytes) -> ReceivedTransforms | None:
-    """Return a received message with the registered layout that it matches; None if it matches none.
+    """Return a received message together with the registered layout that it matches.
+
+    Returns None if the message matches no layout.
 
     Args:
         data: a message with a little-endian header.
@@ -180,7 +191,10 @@ def matching_layout(data: bytes) -> ReceivedTransforms | None:
 
 
 def _mask(text: str) -> bytes:
-    """Return a mask with ones for the length and the string, and zeros for the padding, which may have any value."""
+    """Return a mask for an encoded string: ones for its length and bytes, zeros for the padding.
+
+    Padding may have any value.
+    """
     length = 4 + len(text.encode()) + 1
     return b"\xff" * length + bytes(-length % 4)
 
@@ -196,14 +210,14 @@ _SHORT = 600
 class TransformBatch:
     """Transforms that are valid at one moment.
 
-    Publishers that send the same frames repeatedly should pass the same two tuples each time, because receivers cache
-    their results for them.
+    Publishers that repeatedly send the same frames should always pass the same two tuples, because receivers cache
+    results by them.
 
     Attributes:
         parents: the parent frame of each transform.
         children: the child frame of each transform.
         stamp_ns: the moment, in nanoseconds since the epoch.
-        poses: array, shape (n, 7), of x y z (metres) and qx qy qz qw: each child in its parent.
+        poses: array, shape (n, 7), of the pose of each child in its parent: x y z (metres) and qx qy qz qw.
     """
 
     parents: tuple[str, ...]
@@ -223,7 +237,7 @@ class TransformBatch:
 
     @classmethod
     def from_messages(cls, transforms: Iterable[TransformStamped]) -> TransformBatch:
-        """Return a batch of the same transforms, stamped with the newest of their stamps."""
+        """Create a batch from message objects, stamped with their newest stamp."""
         transforms = list(transforms)
         return cls(
             parents=tuple(transform.header.frame_id for transform in transforms),
@@ -246,14 +260,16 @@ class TransformBatch:
 
 
 class TFMessage(Message):
-    """Transforms, stored as message objects, as a batch or as received bytes; other forms are created on demand.
+    """Transforms, stored as message objects, as a batch or as received bytes.
+
+    Other forms are created on demand.
 
     Args:
         transforms: message objects; none if omitted.
         batch: the transforms as arrays, instead of objects.
     """
 
-    __module__ = "tf2_msgs.msg._tf_message"  # the module that its repr and rclpy's users expect
+    __module__ = "tf2_msgs.msg._tf_message"  # The module that repr shows and rclpy's users expect.
 
     __slots__ = ("_batch", "_list", "_received")
 
@@ -277,8 +293,8 @@ class TFMessage(Message):
     def transforms(self) -> list[TransformStamped]:
         """The transforms as message objects.
 
-        The list may be changed until the message is published if the message was made from objects, and never if it was
-        made from a batch.
+        If the message was created from objects, the list may be changed until the message is published. If it was
+        created from a batch, the list must not be changed.
         """
         if self._list is None:
             if self._received is not None:
@@ -301,11 +317,11 @@ class TFMessage(Message):
         self._batch = None
         self._received = None
 
-    _transforms = transforms  # the name of the slot in rclpy's class
+    _transforms = transforms  # the slot's name in rclpy's class
 
     @property
     def batch(self) -> TransformBatch:
-        """The transforms as arrays: the batch given to the message, or one created from its transforms."""
+        """The transforms as arrays: the given batch, or one that is created from the transforms."""
         if self._batch is not None:
             return self._batch
         if self._received is not None:
@@ -320,9 +336,9 @@ class TFMessage(Message):
     def columns(self) -> tuple[tuple[str, ...], tuple[str, ...], list[int], NDArray[np.float64]] | None:
         """Return the parents, children, stamps and poses of the transforms.
 
-        Stamps are nanoseconds since the epoch; poses have the shape (n, 7).
+        Stamps are in nanoseconds since the epoch. Poses are an array, shape (n, 7), of x y z qx qy qz qw.
 
-        None is returned for a message that stores objects, because reading the objects directly is faster.
+        For a message that stores objects, None is returned, because reading the objects directly is faster.
         """
         if self._received is not None:
             layout = self._received.layout
@@ -366,7 +382,7 @@ class TFMessage(Message):
         return message
 
 
-# The value that rclpy's users find; the slots above are already fixed by now.
+# Programs read this value. It does not affect the real slots, which are fixed by now.
 TFMessage.__slots__ = ("_transforms",)  # type: ignore[assignment]  # of another length
 
 add_class(TFMessage)
@@ -382,7 +398,7 @@ def _poses(transforms: list[Any]) -> NDArray[np.float64]:
 
 @cache
 def _ordinary_writer() -> Callable[[Message], bytes]:
-    """Return the function that writes the transforms one by one, compiled from the definition on first use."""
+    """Return the function that writes transforms one by one, compiled on first use."""
     from linkwright.messages.cdr.writer import compile_writer
 
     return compile_writer(definition_of(TFMessage))
@@ -390,7 +406,7 @@ def _ordinary_writer() -> Callable[[Message], bytes]:
 
 @cache
 def _ordinary_reader() -> Callable[[bytes], TFMessage]:
-    """Return the function that reads the transforms one by one, compiled from the definition on first use."""
+    """Return the function that reads transforms one by one, compiled on first use."""
     from linkwright.messages.cdr.reader import compile_reader
 
     return compile_reader(definition_of(TFMessage), class_of)

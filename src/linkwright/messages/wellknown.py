@@ -1,4 +1,4 @@
-"""The message classes that the packages of Linkwright use by name; ``wellknown.pyi`` describes them to mypy."""
+"""The message classes that Linkwright uses by name, described for mypy in ``wellknown.pyi``."""
 
 from __future__ import annotations
 

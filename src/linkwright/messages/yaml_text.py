@@ -1,8 +1,8 @@
-"""Write messages as YAML, character for character as PyYAML writes them and ``ros2 topic echo`` shows them.
+"""Writes messages as YAML, character for character as ``ros2 topic echo`` shows them.
 
-PyYAML takes milliseconds for a message of a few hundred numbers, too slow to follow /tf. Therefore the lines are
-written here, from a plan for each class. PyYAML is used only for strings, whose quoting is complicated, and its results
-are cached.
+The format is PyYAML's, but PyYAML takes milliseconds for a message of a few hundred numbers, too slow to follow /tf.
+Therefore the lines are written here, from a plan for each class. PyYAML is used only for strings, whose quoting is
+complicated, and its results are cached.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ def to_yaml(
     no_str: bool = False,
     flow_style: bool = False,
 ) -> str:
-    """Return a message as YAML.
+    """Return a message as YAML text.
 
     Args:
         message: any message.
-        truncate_length: longer strings and lists are cut to this length and end with ``...``.
+        truncate_length: longer strings and lists are cut to this length and end with ``...``; None for no limit.
         no_arr: whether arrays and sequences are replaced by their type and length.
         no_str: whether strings are replaced by their length.
-        flow_style: whether lists are in brackets, and their messages in braces.
+        flow_style: whether lists are written in brackets, and the messages in them in braces.
     """
     if flow_style:
         return _dumped(to_dict(message, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str), flow_style=True)
@@ -48,14 +48,23 @@ def to_yaml(
 
 
 class _Writer:
-    """Writes one message; a path gives the containers of a value, ``m`` for mappings and ``s`` for lists."""
+    """Writes one message.
+
+    A path names the containers around a value: ``m`` for a mapping, ``s`` for a list.
+    """
 
     def __init__(self, shown: Abridgement, lines: list[str]) -> None:
         self._shown = shown
         self._lines = lines
 
     def message(self, message: Message, indent: str, way: tuple[str, ...]) -> None:
-        """Write the lines of a message's fields, all of them indented."""
+        """Write the lines of a message's fields, with an indentation.
+
+        Args:
+            message: the message.
+            indent: the indentation of each line.
+            way: the path of the message.
+        """
         way = (*way, "m")
         lines, append = self._lines, self._lines.append
         for key, slot, kind, number in _plan(type(message)):
@@ -123,7 +132,7 @@ _plans: dict[str, list[_Step]] = {}
 
 
 def _plan(cls: type[Message]) -> list[_Step]:
-    """Return the steps that write the fields of a class."""
+    """Return the steps that write the fields of a message class."""
     plan = _plans.get(cls.TYPE_NAME)
     if plan is None:
         plan = _plans[cls.TYPE_NAME] = [_step(field) for field in definition_of(cls).fields]
@@ -136,7 +145,7 @@ def _step(field: Field) -> _Step:
 
 
 def _number_text(kind: FieldType) -> Callable[[Any], str] | None:
-    """Return the function that formats a value of a type without further tests; None if there is none."""
+    """Return the function that formats a number of a type; None if values need further tests."""
     primitive = kind.primitive
     writers: dict[type, Callable[[Any], str]] = {int: str, float: _float_text, bool: _bool_text}
     return None if primitive is None else writers.get(primitive.python)
@@ -161,7 +170,10 @@ def _scalar(text: str) -> str:
 
 
 def _placed_scalar(text: str, way: tuple[str, ...]) -> str:
-    """Format a multi-line string; its indentation depends on its place, so PyYAML formats it in a similar place."""
+    """Format a multi-line string, whose indentation depends on its path.
+
+    PyYAML formats the string inside containers of the same kinds.
+    """
     marker = _dumped(_wrapped("X", way), flow_style=False)
     return _dumped(_wrapped(text, way), flow_style=False)[marker.index("X") : -1]
 
@@ -174,12 +186,12 @@ def _wrapped(text: str, way: tuple[str, ...]) -> Any:
 
 
 def _dumped(data: Any, *, flow_style: bool) -> str:
-    import yaml  # imported here because a launch without an echo does not need it
+    import yaml  # imported here because only programs that show messages need it
 
     class Dumper(yaml.SafeDumper):
         """PyYAML's dumper, except that the fields of a message are never in braces.
 
-        The style of lists does not matter (rosidl_runtime_py).
+        As in rosidl_runtime_py, this does not depend on the style of lists.
         """
 
         def represent_fields(self, data: OrderedDict[str, Any]) -> yaml.MappingNode:

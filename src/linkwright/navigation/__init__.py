@@ -1,4 +1,4 @@
 """Localization, mapping, planning and path following.
 
-Computations on grids, poses and scans, independent of ROS.
+The computations work on grids, poses and scans, and do not depend on ROS.
 """

@@ -1,8 +1,6 @@
-"""Nodes that come with Linkwright.
+"""The ROS 2 nodes that are part of Linkwright, such as those for a robot description and the demos.
 
-They include the ROS 2 nodes that show and move a robot description, and the ROS 2 demos.
-
-Each node is in its own module, which is imported when the node is started.
+Each node has a module of its own, which is imported when the node is started.
 """
 
 from linkwright.nodes.options import (

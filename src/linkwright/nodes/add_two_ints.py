@@ -1,6 +1,6 @@
 """add_two_ints_server and add_two_ints_client of demo_nodes_cpp and demo_nodes_py.
 
-The service tutorials use them.
+The tutorials on services use these nodes.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ _WAIT_SECONDS = 1.0
 
 
 class AddTwoIntsServer(SingleNode):
-    """The running server, which logs each request."""
+    """The running add_two_ints_server node, which logs each request."""
 
     DEFAULT_NAME = "add_two_ints_server"
 
@@ -32,7 +32,7 @@ class AddTwoIntsServer(SingleNode):
 
 
 class AddTwoIntsClient(SingleNode):
-    """The running client: waits for the server, asks it to add 2 and 3, and exits."""
+    """The running add_two_ints_client node, which requests the sum of 2 and 3 and exits."""
 
     DEFAULT_NAME = "add_two_ints_client"
 

@@ -1,4 +1,4 @@
-"""Waiting for services and their responses, on the clock of the graph."""
+"""Functions that wait for services and their responses, with timeouts in real time."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from linkwright.graph.loop.node_handle import ReentrantCallbackGroup
 
 
 async def wait_for_future(node: Node, future: Any, seconds: float | None) -> bool:
-    """Wait for a future, and return whether it was done in time.
+    """Wait for a future, and return whether it was done before the timeout.
 
     Args:
-        node: the node; the timeout runs in real time even if the node's time is simulated.
+        node: the node that waits.
         future: a future of the graph, or of asyncio.
-        seconds: the timeout; None to wait forever.
+        seconds: the timeout in real time, even if the node uses simulated time; None for no limit.
     """
     over: asyncio.Future[bool] = asyncio.get_running_loop().create_future()
 
@@ -24,7 +24,7 @@ async def wait_for_future(node: Node, future: Any, seconds: float | None) -> boo
             over.set_result(came)
 
     clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
-    group = ReentrantCallbackGroup()  # The waiting callback may occupy the node's own group.
+    group = ReentrantCallbackGroup()  # The node's default group may be occupied by the callback that waits.
     timer = None
     if seconds is not None:
         timer = node.create_timer(seconds, lambda: resolve(False), callback_group=group, clock=clock)
@@ -37,13 +37,13 @@ async def wait_for_future(node: Node, future: Any, seconds: float | None) -> boo
 
 
 async def wait_for_service(node: Node, client: Client[Any, Any], seconds: float | None, *, wanted: bool = True) -> bool:
-    """Wait until a service appears or disappears, and return whether that happened in time.
+    """Wait for a service to appear or disappear, and return whether it did before the timeout.
 
     Args:
         node: the node that waits.
         client: the client of the service.
-        seconds: the timeout; None to wait forever.
-        wanted: True to wait until the service appears, False until it disappears.
+        seconds: the timeout; None for no limit.
+        wanted: True to wait until the service appears, False to wait until it disappears.
     """
     loop = asyncio.get_running_loop()
     come: asyncio.Future[None] = loop.create_future()
@@ -60,4 +60,4 @@ async def wait_for_service(node: Node, client: Client[Any, Any], seconds: float 
         return client.service_is_ready() is wanted or await wait_for_future(node, come, seconds)
     finally:
         node.graph.unwatch(changed)
-        come.cancel()  # Callbacks that are already scheduled then do nothing.
+        come.cancel()  # callbacks that are already scheduled then have no effect

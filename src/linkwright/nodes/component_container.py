@@ -1,4 +1,4 @@
-"""component_container: loads nodes into its process at run time and unloads them (rclcpp_components)."""
+"""component_container: loads nodes into its process and unloads them (rclcpp_components)."""
 
 from __future__ import annotations
 
@@ -17,13 +17,14 @@ from linkwright.nodes.options import COMPONENTS, NodeOptions, RunningNode, Singl
 class ComponentContainer(SingleNode):
     """The running component container.
 
-    It answers ``~/_container/load_node``, ``unload_node`` and ``list_nodes`` as rclcpp_components does. It can load the
-    components that come with Linkwright (`COMPONENTS`); other components are compiled libraries. Further nodes that a
-    component creates, such as costmaps, get the parameters that files give to the container's process.
+    The container offers the services ``~/_container/load_node``, ``unload_node`` and ``list_nodes``, as
+    rclcpp_components does. It can load the components of Linkwright (`COMPONENTS`); other components are compiled
+    libraries, which it cannot load. If a component creates further nodes, such as costmaps, they receive the
+    parameters from the parameter files of the container's process.
 
     Attributes:
         on_loaded: called with each loaded node and the request that loaded it.
-        loading: returns a context that is active while a node is created, to attribute its log lines.
+        loading: returns a context that is entered while a node is created, to attribute its log lines.
     """
 
     DEFAULT_NAME = "ComponentManager"
@@ -49,7 +50,7 @@ class ComponentContainer(SingleNode):
 
     @property
     def loaded(self) -> dict[int, RunningNode]:
-        """The loaded nodes by ID."""
+        """The loaded nodes by unique ID."""
         return dict(self._loaded)
 
     def close(self) -> None:
@@ -59,7 +60,7 @@ class ComponentContainer(SingleNode):
         super().close()
 
     def load(self, package: str, plugin: str, options: NodeOptions) -> tuple[int, RunningNode]:
-        """Load a component, and return its ID and node.
+        """Load a component, and return the unique ID and the node.
 
         Raises:
             LinkwrightError: NODE601, there is no such component; or an error of the node itself.
@@ -123,7 +124,7 @@ class ComponentContainer(SingleNode):
 
 
 def load_request() -> Any:
-    """Return an empty request to load a component."""
+    """Return an empty request for the service ``load_node``."""
     return get_service("composition_interfaces/srv/LoadNode").Request()
 
 

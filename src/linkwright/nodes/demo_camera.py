@@ -1,4 +1,4 @@
-"""cam2image of image_tools without a camera: publishes a moving test image on the topic ``image``."""
+"""cam2image of image_tools without a camera: publishes a moving test pattern on the topic ``image``."""
 
 from __future__ import annotations
 
@@ -73,9 +73,9 @@ class DemoCamera(SingleNode):
 
 
 def _stripes(width: int, height: int) -> NDArray[np.uint8]:
-    """Return a test image: bars of eight colours above a ramp from black to white.
+    """Return a test pattern: bars of eight colours above a ramp from black to white.
 
-    It is an array of shape (height, width, 3) in BGR.
+    The pixels are in BGR, of shape (height, width, 3).
     """
     columns = np.arange(width)
     bars = 7 - columns * 8 // width

@@ -1,4 +1,7 @@
-"""listener: logs the messages of a talker (demo_nodes_cpp, demo_nodes_py, composition)."""
+"""listener: logs the messages of a talker.
+
+The packages demo_nodes_cpp, demo_nodes_py and composition have this node.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""talker: publishes a greeting with a count, once a second (demo_nodes_cpp, demo_nodes_py, composition)."""
+"""talker: publishes a greeting with a counter once a second.
+
+The packages demo_nodes_cpp, demo_nodes_py and composition have this node.
+"""
 
 from __future__ import annotations
 

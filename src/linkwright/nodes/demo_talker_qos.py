@@ -18,7 +18,7 @@ _ENDLESS = 1 << 31
 
 
 class _Counted(SingleNode, ABC):
-    """The base of both nodes: parses their arguments, and ends after a number of messages."""
+    """The base class of both nodes, which parses the arguments and ends after a number of messages."""
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self.finished: asyncio.Future[int] = asyncio.get_running_loop().create_future()
@@ -42,7 +42,7 @@ class _Counted(SingleNode, ABC):
 
 
 class TalkerQos(_Counted):
-    """The running talker."""
+    """The running talker_qos node."""
 
     DEFAULT_NAME = "talker_qos"
     _what = "talker"
@@ -59,7 +59,7 @@ class TalkerQos(_Counted):
 
 
 class ListenerQos(_Counted):
-    """The running listener."""
+    """The running listener_qos node."""
 
     DEFAULT_NAME = "listener_qos"
     _what = "listener"

@@ -1,4 +1,4 @@
-"""Publication of a node's diagnostics on ``/diagnostics`` each second, as in diagnostic_updater."""
+"""Publishes a node's diagnostics on ``/diagnostics`` once a second, as diagnostic_updater does."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ class Health:
 
 
 class DiagnosticUpdater:
-    """Publishes the diagnostics of a node once a second of its clock.
+    """Publishes the diagnostics of a node once a second of the node's clock.
 
     Args:
         node: the node, whose name is the prefix of the task's name.
         task: the name of the diagnostic task.
         ask: returns the current health.
-        hardware_id: the hardware; ``none`` if there is none, as in diagnostic_updater.
+        hardware_id: the ID of the hardware; ``none`` for no hardware, as in diagnostic_updater.
     """
 
     def __init__(self, node: Node, task: str, ask: Callable[[], Health], hardware_id: str = "none") -> None:

@@ -1,4 +1,4 @@
-"""Interfaces of a node and its host for files that the node reloads when they are saved."""
+"""The interfaces between a node and its host for reloading files when they are saved."""
 
 from __future__ import annotations
 
@@ -32,18 +32,21 @@ class ReadWorld(Protocol):
 
     @property
     def read_ns(self) -> int:
-        """A time, in nanoseconds since the epoch, before which none of the world's files was read."""
+        """A time, in nanoseconds since the epoch, before the first of the world's files was read."""
 
 
 class FileFollower(Protocol):
-    """The host of a node, which watches files; its methods are called on the event loop."""
+    """The host of a node, which watches the node's files.
+
+    All methods are called on the event loop.
+    """
 
     @property
     def launcher_node(self) -> Node:
-        """A node of the host with which services are called."""
+        """The host's own node, through which it calls services."""
 
     def show(self, about: str, findings: Iterable[Diagnostic]) -> None:
-        """Show the current findings about a subject in the viewers."""
+        """Replace the findings about a subject in the viewers."""
 
     def follow_world(
         self,
@@ -51,19 +54,21 @@ class FileFollower(Protocol):
         read: Callable[[str], ReadWorld],
         load: Callable[[str], Awaitable[Sequence[Diagnostic]]],
     ) -> None:
-        """Watch the file of a world: read it when it is saved, and load it if it has no new errors.
+        """Watch the files of a world; when one is saved, read the world and load it without new errors.
 
         Args:
             world: the current world.
-            read: reads the file in another thread; raises LinkwrightError.
-            load: has the node load the file; returns findings that replace those of reading.
+            read: reads the world's file, in another thread; raises LinkwrightError.
+            load: makes the node load the file, and returns findings that replace the findings of reading.
         """
 
     def follow_text(self, text: str, name: str, renew: Callable[[str], None]) -> None:
-        """Call back with each new text of a description, if this process expanded it from a file.
+        """Watch the file from which this process expanded a description, and pass on each new version.
+
+        If this process did not expand the description, do nothing.
 
         Args:
             text: the description.
             name: the name of the described object; one file is watched for each name.
-            renew: receives the new text; raises LinkwrightError if it is invalid.
+            renew: receives the new description; raises LinkwrightError if the description is invalid.
         """

@@ -1,4 +1,4 @@
-"""Lookup of frame poses, for nodes that transform messages."""
+"""Looks up the poses of frames for nodes that transform messages."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ _SECONDS_BETWEEN_COMPLAINTS = 5.0
 
 
 class FramePoses:
-    """The transforms that a node receives.
+    """The transforms that a node has received.
 
     Args:
         node: the node that subscribes to ``/tf`` and ``/tf_static``.
-        complaint: the start of the warning about a missing transform.
+        complaint: the beginning of the warning about a missing transform.
 
     Attributes:
-        buffer: the transforms.
+        buffer: the transform buffer.
     """
 
     def __init__(self, node: Node, complaint: str) -> None:
@@ -28,10 +28,10 @@ class FramePoses:
         TransformListener(self.buffer, node)
 
     def pose(self, target: str, source: str, time_ns: int) -> Transform | None:
-        """Return the pose of a frame in another one at a time, or the latest known.
+        """Return the pose of the frame `source` in the frame `target` at a time, or the latest pose.
 
-        It never waits: if a transform is a little late, the previous one is used. If there is no transform at all, it
-        logs a throttled warning and returns None.
+        The lookup does not wait. If the transform for the time has not arrived yet, the latest transform is used.
+        Without any transform, a throttled warning is logged and the result is None.
         """
         if target == source:
             return IDENTITY

@@ -1,4 +1,4 @@
-"""The joints of joint_state_publisher: its parameters, their order and limits, and mimic joints."""
+"""The joints of joint_state_publisher: parameters, order, limits and mimic joints."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _DEPENDENT_FIELDS = ("parent", "factor", "offset")
 
 @dataclass(frozen=True, slots=True)
 class Dependence:
-    """A dependent joint: its position is ``factor * position of parent + offset`` (rad or m)."""
+    """The dependence of a joint: ``position = factor * position of parent + offset`` (rad or m)."""
 
     parent: str
     factor: float = 1.0
@@ -29,19 +29,19 @@ class Dependence:
 
 @dataclass(frozen=True, slots=True)
 class JointSettings:
-    """The parameters as one object.
+    """The parameters of joint_state_publisher.
 
     Attributes:
         rate: the number of messages per second.
         publish_default_positions: whether joints without a received position are published at their zero position.
-        publish_default_velocities: whether such joints are published with velocity 0.
-        publish_default_efforts: whether such joints are published with effort 0.
-        use_mimic_tags: whether joints with a ``<mimic>`` tag follow their master.
+        publish_default_velocities: whether joints without a received velocity are published with velocity 0.
+        publish_default_efforts: whether joints without a received effort are published with effort 0.
+        use_mimic_tags: whether joints with a ``<mimic>`` tag follow the joint that the tag names.
         use_smallest_joint_limits: whether the soft limits of a ``<safety_controller>`` apply, too.
         source_list: the topics from which joint states are read.
-        delta: how far every joint moves each time, in rad or m; 0 to not move.
-        zeros: the starting positions by joint, in rad or m.
-        dependent_joints: the joints that follow others, regardless of the description.
+        delta: the distance that every joint moves in each cycle, in rad or m; 0 for no motion.
+        zeros: the initial positions by joint, in rad or m.
+        dependent_joints: the joints that depend on other joints, in addition to those of the description.
     """
 
     rate: float = 10.0
@@ -57,9 +57,9 @@ class JointSettings:
 
 
 def declare_settings(node: Node) -> None:
-    """Declare the parameters.
+    """Declare the parameters of joint_state_publisher.
 
-    Given values keep their types, as in the ROS node (``rate: 2.5`` is valid).
+    A given value keeps its type, as in the ROS node; ``rate: 2.5`` is therefore valid.
 
     Raises:
         LinkwrightError: the value of a parameter is invalid.
@@ -85,7 +85,7 @@ def settings_from(values: Mapping[str, Any]) -> JointSettings:
     """Convert parameter values by name to settings.
 
     Raises:
-        LinkwrightError: NODE201, values are invalid; it lists all of them.
+        LinkwrightError: NODE201, values are invalid; the error lists all of them.
     """
     reader = _Reader(values)
     settings = JointSettings(
@@ -138,7 +138,7 @@ class _Reader:
     def dependent_joints(self) -> dict[str, Dependence]:
         dependent: dict[str, dict[str, Any]] = {}
         for rest in self.below("dependent_joints"):
-            # Joint names may contain dots, so split at the last one.
+            # Joint names can contain dots, so split at the last dot.
             joint, _, entry = rest.rpartition(".")
             if entry not in _DEPENDENT_FIELDS or not joint:
                 self.problems.append(
@@ -184,9 +184,10 @@ _UNLIMITED_SPAN = {"revolute": 2.0 * pi, "continuous": 2.0 * pi, "prismatic": 2.
 
 @dataclass(frozen=True, slots=True)
 class JointRange:
-    """A published joint with its range (rad or m); both limits are finite.
+    """A published joint with finite position limits (rad or m).
 
-    `zero` is the start position: the joint's entry in ``zeros``, else 0, or the middle of the range if it excludes 0.
+    `zero` is the initial position: the joint's entry in ``zeros``, or else 0, or the middle of the range if 0 is
+    outside.
     """
 
     name: str
@@ -202,17 +203,18 @@ class JointRange:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class JointLayout:
-    """The joints of a robot as joint_state_publisher uses them.
+    """The joints of a robot as joint_state_publisher handles them.
 
     Attributes:
-        ranges: every published joint by name, in file order, which is also the order in messages.
-        free: the joints that mimic no other joint, in the same order; position arrays have one entry for each.
+        ranges: every published joint by name, in the order of the file and of the messages.
+        free: the joints that do not mimic another joint, in the same order; position arrays have one entry per free
+            joint.
         dependent: the other joints by name, each with the joint that it mimics directly.
-        masters: array, shape (n,), the index in `free` of the joint at the end of each joint's mimic chain; -1 if that
-            joint does not move.
-        factor: array, shape (n,): published position = factor * position of the master + offset.
-        offset: array, shape (n,).
-        problems: the problems of the description; the joints concerned are left out or do not move.
+        masters: array of shape (n,): for each published joint, the index in `free` of the joint at the end of its mimic
+            chain; -1 if that joint does not move.
+        factor: array of shape (n,): published position = factor * position of the master + offset.
+        offset: array of shape (n,), see `factor`.
+        problems: the problems of the description; the joints concerned are omitted or do not move.
     """
 
     ranges: Mapping[str, JointRange]
@@ -246,8 +248,9 @@ def layout_of(robot: Robot, settings: JointSettings) -> JointLayout:
             continue
         zero = settings.zeros.get(joint.name, _default_zero(*limits))
         ranges[joint.name] = JointRange(joint.name, joint.type, *limits, zero)
-        # The parameter has priority over <mimic>, and is kept when the description changes. In the ROS node it is
-        # overwritten.
+        # The parameter takes precedence over <mimic>, and is still used after the description changes. The ROS node
+        # overwrites
+        # it.
         if joint.name in settings.dependent_joints:
             dependent[joint.name] = settings.dependent_joints[joint.name]
         elif settings.use_mimic_tags and joint.mimic is not None:
@@ -270,7 +273,7 @@ def layout_of(robot: Robot, settings: JointSettings) -> JointLayout:
 
 
 def _resolve(name: str, dependent: Mapping[str, Dependence]) -> tuple[str, float, float]:
-    """Return the free joint at the end of a chain of mimics, and the factor and offset along it."""
+    """Return the free joint at the end of a mimic chain, and the factor and offset of the whole chain."""
     chain = [name]
     factor, offset = 1.0, 0.0
     while (link := dependent.get(name)) is not None:
@@ -310,7 +313,10 @@ def _limits(joint: Joint, settings: JointSettings, problems: list[str]) -> tuple
 
 
 def _missing_limit(joint: Joint) -> str | None:
-    """Return the name of a missing limit, which urdfdom reads as 0 and joint_state_publisher rejects."""
+    """Return the name of the first missing limit attribute, or None.
+
+    urdfdom reads a missing limit as 0, and joint_state_publisher rejects it.
+    """
     if joint.limit is None:
         return None
     for name, value in (("lower", joint.limit.lower), ("upper", joint.limit.upper)):
@@ -320,9 +326,9 @@ def _missing_limit(joint: Joint) -> str | None:
 
 
 def _is_given(joint: Joint, tag: str, attribute: str) -> bool:
-    """Return whether the file sets the attribute.
+    """Return whether the file sets an attribute of a joint's child element.
 
-    The result is always true for a joint that was not read from a file.
+    The result is always True for a joint that was not read from a file.
     """
     if joint.element is None:
         return True

@@ -1,9 +1,9 @@
 """joint_state_publisher: publishes joint states of a robot whose joints are not measured.
 
-It follows the ROS 2 node of that name (2.4), with these deliberate differences:
+The node follows the ROS 2 node of that name (2.4), with these deliberate differences:
 
-- The parameters ``dependent_joints.*`` have priority over ``<mimic>`` tags and are kept when the description changes.
-- A new description keeps the positions of existing joints, and the first message is published immediately.
+- The parameters ``dependent_joints.*`` take precedence over ``<mimic>`` tags, also after the description changes.
+- After a new description, existing joints keep their positions, and the first message is published immediately.
 - A parameter that is changed while the node runs takes effect.
 - Descriptions are URDF. SDF and COLLADA, which the ROS node also reads, are reported and ignored.
 - Infinite limits become a range that a slider can show, and an invalid description leaves the previous one in use.
@@ -47,18 +47,22 @@ Array = NDArray[np.float64]
 
 
 class _Quantity:
-    """A value for each free joint; NaN if it has none."""
+    """The positions, velocities or efforts of the free joints; NaN for a joint without a value."""
 
     def __init__(self, values: Array) -> None:
         self._with_zero = np.append(values, 0.0)
         self.values = self._with_zero[:-1]
 
     def spread(self, layout: JointLayout, *, scaled: bool, shifted: bool) -> Array | None:
-        """Return the values for a message, one for each published joint.
+        """Return a value for each published joint, for a message.
 
-        Returns None if no joint has a value.
+        The result is None if no joint has a value. A joint that mimics a joint without a value has 0, as in the ROS
+        node.
 
-        A joint that mimics a joint without a value has 0, as in the ROS node.
+        Args:
+            layout: the joints.
+            scaled: whether the factors of mimic joints apply.
+            shifted: whether the offsets of mimic joints apply.
         """
         if np.isnan(self.values).all():
             return None
@@ -72,12 +76,10 @@ class _Quantity:
 
 
 class JointPositions:
-    """Positions (rad or m), velocities and efforts of the free joints.
-
-    The other joints depend on them.
+    """Positions (rad or m), velocities and efforts of the free joints, on which the other joints depend.
 
     Args:
-        settings: which quantities joints have from the start.
+        settings: the settings, which determine the quantities that joints have from the start.
     """
 
     def __init__(self, settings: JointSettings) -> None:
@@ -90,8 +92,9 @@ class JointPositions:
     def take_over(self, layout: JointLayout, settings: JointSettings) -> None:
         """Change to another layout.
 
-        Joints that are free in both layouts and have left their start position keep their state, moved into the new
-        limits. All others start at zero.
+        Joints that are free in both layouts and have left their initial position keep their state, clamped to the new
+        limits.
+        All other joints start at their zero position.
         """
         before, rows_before = self._free_states(), self._rows
         zeros_before = {joint.name: joint.zero for joint in self.layout.free}
@@ -113,7 +116,7 @@ class JointPositions:
                 self._store(joint, before[:, row], zeros_before[joint.name])
 
     def apply_message(self, message: JointState) -> None:
-        """Apply the values of a message to the free joints, including positions outside the limits."""
+        """Apply the values of a message to the free joints, without clamping positions to the limits."""
         for number, name in enumerate(message.name):
             row = self._rows.get(name)
             if row is None:
@@ -127,9 +130,9 @@ class JointPositions:
                     quantity.values[row] = given[number]
 
     def sweep(self, delta: float) -> None:
-        """Move every free joint by delta (rad or m), reversing at limits.
+        """Move every free joint by `delta` (rad or m); joints reverse at their limits.
 
-        Continuous joints wrap around.
+        Continuous joints wrap around instead.
         """
         position, direction = self._position.values, self._direction
         position += direction * delta
@@ -140,20 +143,21 @@ class JointPositions:
             self._ahead = np.where(self._direction > 0.0, self._upper, self._lower)
 
     def set(self, name: str, position: float) -> None:
-        """Set the position of a free joint, within its limits; raise KeyError if there is no such joint."""
+        """Set the position of a free joint, clamped to its limits.
+
+        Raises:
+            KeyError: there is no such joint.
+        """
         row = self._rows[name]
         self._position.values[row] = min(max(position, self._lower[row]), self._upper[row])
 
     def published(self) -> Array:
-        """Return the positions of all published joints in the order of messages.
-
-        The value is 0 for joints without a position.
-        """
+        """Return the positions of all published joints in the order of messages; 0 for unknown positions."""
         positions = self._position.spread(self.layout, scaled=True, shifted=True)
         return np.zeros(len(self.layout.ranges)) if positions is None else positions
 
     def fill(self, message: JointState) -> None:
-        """Write names and quantities into a message; quantities that no joint has remain empty."""
+        """Write the joint names and values to a message; quantities without any value remain empty."""
         message.name = list(self.layout.ranges)
         velocities = self._velocity.spread(self.layout, scaled=True, shifted=False)
         efforts = self._effort.spread(self.layout, scaled=False, shifted=False)
@@ -187,13 +191,13 @@ _FIRST_ELEMENT = re.compile(r"<([A-Za-z]\w*)")
 
 
 class Watcher(Protocol):
-    """The interface for observers of the joints."""
+    """The interface of an observer of the joints."""
 
     def rebuild(self) -> None:
         """Handle a change of the robot or of the settings."""
 
     def notice_positions(self) -> None:
-        """Handle positions that were set by a source or the sweep."""
+        """Handle positions that were set by a source topic or by the periodic motion."""
 
 
 class JointStatePublisher(SingleNode):
@@ -201,8 +205,8 @@ class JointStatePublisher(SingleNode):
 
     Args:
         graph: the graph to which the node is added.
-        options: the options of the node; its one argument may be a URDF file, otherwise it waits for the topic
-            ``robot_description``.
+        options: the options of the node. The only argument is a URDF file; without it, the description is received on
+            the topic ``robot_description``.
 
     Raises:
         LinkwrightError: the node cannot start: invalid parameters (NODE201), joints that mimic each other in a cycle
@@ -241,11 +245,11 @@ class JointStatePublisher(SingleNode):
         return self._joints
 
     def watch(self, watcher: Watcher) -> None:
-        """Register a watcher."""
+        """Register a watcher, which is notified of changes to the joints."""
         self._watchers.append(watcher)
 
     def publish_soon(self) -> None:
-        """Publish in the next iteration of the event loop, once for any number of calls."""
+        """Publish once in the next iteration of the event loop, even if called several times."""
         self._soon.trigger()
 
     def _robot_from_arguments(self, arguments: Sequence[str]) -> Robot | None:
@@ -357,8 +361,9 @@ class JointStatePublisher(SingleNode):
             watcher.notice_positions()
 
     def _publish_now(self) -> None:
-        # Delay the next periodic message by a full period: sent right after this one, it would only make
-        # robot_state_publisher delay the next move of a slider.
+        # Delay the next periodic message by a full period. If it were sent right after this message,
+        # robot_state_publisher would
+        # delay the next move of a slider.
         self._timer.reset()
         self._publish()
 
@@ -370,6 +375,6 @@ class JointStatePublisher(SingleNode):
 
 
 def _other_format(text: str) -> str | None:
-    """Return the name of another robot format if the root element of a text indicates one, else None."""
+    """Return the name of another robot format if the root element indicates one, otherwise None."""
     element = _FIRST_ELEMENT.search(text)
     return None if element is None else _OTHER_FORMATS.get(element[1])

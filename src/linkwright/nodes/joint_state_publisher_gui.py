@@ -1,4 +1,4 @@
-"""joint_state_publisher_gui: joint_state_publisher with sliders, which are displayed and moved in the viewer."""
+"""joint_state_publisher_gui: joint_state_publisher with sliders, which the viewer displays."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ class JointSlider:
         name: the name of the joint.
         kind: revolute, continuous or prismatic.
         lower: the lower end of the slider, in rad or m; finite.
-        upper: the upper end of the slider.
-        zero: the position set by "Center".
-        mimic: the joint that this one mimics directly, which means that the slider cannot be moved; None for a free
+        upper: the upper end of the slider, in rad or m; finite.
+        zero: the position that "Center" sets, in rad or m.
+        mimic: the joint that this joint mimics directly, in which case the slider cannot be moved; None for a free
             joint.
         multiplier: the factor of a mimic joint: position = multiplier * position of `mimic` + offset.
         offset: the offset of a mimic joint, in rad or m.
@@ -45,11 +45,11 @@ class JointSlider:
 
 
 class JointPanel:
-    """The sliders of all free joints.
+    """The sliders of joint_state_publisher_gui.
 
     Args:
         node: the node whose executor runs the callbacks of subscribers.
-        joints: the state that the sliders move.
+        joints: the positions that the sliders set.
         publish_soon: called when the panel changed a position.
         random: the random generator for `randomize`.
     """
@@ -69,26 +69,25 @@ class JointPanel:
     def sliders(self) -> list[JointSlider]:
         """Return the sliders, in the order of the description's file.
 
-        A joint with equal limits has no slider, and neither has a joint that mimics it.
+        A joint with equal limits does not have a slider, and neither does a joint that mimics such a joint.
         """
         return list(self._sliders)
 
     def positions(self) -> dict[str, float]:
-        """Return the positions of all sliders, in rad or m."""
+        """Return the position of each joint with a slider by name, in rad or m."""
         published = dict(zip(self._joints.layout.ranges, self._joints.published().tolist(), strict=True))
         return {slider.name: published[slider.name] for slider in self._sliders}
 
     def set_position(self, name: str, value: float) -> bool:
-        """Set the position of a joint, within its limits.
+        """Set the position of a joint, clamped to its limits.
 
         Args:
-            name: the joint.
-            value: rad or m.
+            name: the name of the joint.
+            value: the position in rad or m.
 
         Returns:
-            Whether the joint was moved: False for a joint that has no slider or mimics another one, and for a value
-                that is
-            not a finite number.
+            Whether the joint was moved. The result is False for a joint that has no slider or mimics another joint, and
+            for a value that is not a finite number.
         """
         slider = next((row for row in self._sliders if row.name == name and row.mimic is None), None)
         if slider is None or not isfinite(value):
@@ -98,23 +97,24 @@ class JointPanel:
         return True
 
     def randomize(self) -> None:
-        """Set every joint to a random position within its limits."""
+        """Set every free joint to a random position within its limits."""
         self._logger.info("Randomizing")
         for slider in self._free():
             self._joints.set(slider.name, self._random.uniform(slider.lower, slider.upper))
         self._moved()
 
     def center(self) -> None:
-        """Set every joint to its zero position, which need not be the middle of its range."""
+        """Set every free joint to its zero position, which need not be the middle of its range."""
         self._logger.info("Centering")
         for slider in self._free():
             self._joints.set(slider.name, slider.zero)
         self._moved()
 
     def subscribe(self, callback: PanelCallback) -> Callable[[], None]:
-        """Register a callback for changes: ``"sliders"`` when the sliders change, ``"positions"`` when joints move.
+        """Register a callback for changes.
 
-        Changes in the same iteration of the event loop are reported once.
+        The callback is called with ``"sliders"`` when the sliders change, and with ``"positions"`` when joints move.
+        Several changes in one iteration of the event loop are reported once.
 
         Returns:
             A function that removes the callback.
@@ -162,7 +162,7 @@ class JointPanel:
         self.notice_positions()
 
     def notice_positions(self) -> None:
-        """Notify subscribers that joints were moved from elsewhere."""
+        """Notify subscribers that joints were moved by something other than the panel."""
         self._positions_changed.trigger()
 
     def _free(self) -> list[JointSlider]:
@@ -181,10 +181,10 @@ class JointPanel:
 
 
 class JointStatePublisherGui(JointStatePublisher):
-    """The running joint_state_publisher_gui node, whose default name is ``joint_state_publisher`` as in ROS.
+    """The running joint_state_publisher_gui node, named ``joint_state_publisher`` by default as in ROS.
 
-    A moved slider is published immediately; moves in the same iteration of the event loop share one message. Messages
-    on the topics of ``source_list`` move the sliders.
+    The move of a slider is published immediately; several moves in one iteration of the event loop share one message.
+    Messages on the topics of ``source_list`` move the sliders.
     """
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:

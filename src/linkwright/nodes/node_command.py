@@ -1,8 +1,8 @@
-"""Nodes that replace programs of other packages, as started from a command line.
+"""Nodes that replace programs of other packages on a command line.
 
-Entry points of the group ``linkwright.replaced_programs`` provide them: each has the name of a program, as found in
-``PATH``, and points to a `CommandParser`. A launch file that starts such a program starts the node instead if the
-program is not installed.
+The entry points of the group ``linkwright.replaced_programs`` declare such nodes. Each entry point has the name of a
+program in ``PATH``, and refers to a `CommandParser`. If a launch file starts the program and the program is not
+installed, the node is started instead.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ from typing import Any
 
 @dataclass(frozen=True)
 class NodeCommand:
-    """A node that replaces a program of a command line.
+    """A node that replaces a program on a command line.
 
     Attributes:
-        package: the node's package.
+        package: the package of the node.
         executable: the node's executable in that package.
         parameters: the parameters of the node.
-        ros_arguments: further arguments, which begin with ``--ros-args``.
+        ros_arguments: additional arguments, which begin with ``--ros-args``.
     """
 
     package: str

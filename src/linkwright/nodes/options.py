@@ -1,8 +1,9 @@
-"""Nodes that can be started in this process: their options, their interfaces, and their registry.
+"""Nodes that can be started in this process: their options, interfaces and registry.
 
-Nodes are found by the entry points ``linkwright.nodes`` and ``linkwright.components``, whose names are
-``PACKAGE/EXECUTABLE``, or ``PACKAGE/PLUGIN`` for nodes that containers load. Each points to a `Factory`. Linkwright's
-are declared in its ``pyproject.toml``, other packages' in theirs. A module is imported when its first node is started.
+Nodes are declared by entry points of the groups ``linkwright.nodes`` and ``linkwright.components``. The names of the
+entry points are ``PACKAGE/EXECUTABLE``, or ``PACKAGE/PLUGIN`` for nodes that containers load. Each entry point refers
+to a `Factory`. Linkwright's entry points are in its ``pyproject.toml``; other packages can declare their own. A module
+is imported when its first node is started.
 """
 
 from __future__ import annotations
@@ -46,17 +47,18 @@ class NodeOptions:
     """The options of a node, from a launch file or a command line.
 
     Attributes:
-        name: the name; None for the default name in its code.
+        name: the name; None for the default name of the node.
         namespace: the namespace.
-        parameters: the values by name; nested dictionaries are names with dots.
+        parameters: the values by name; nested dictionaries represent names with dots.
         remappings: the rules ``(from, to)``.
         arguments: the command line without the program's name, including ``--ros-args`` sections.
         library: the parsed robot descriptions that the process shares.
         for_others: the parameters of further nodes that the node creates, by node name, from the parameter files of its
             process.
-        environment: the environment variables with which the node looks for files; by default those of the process.
-        output: receives the lines that a node prints as its result; by default standard output.
-        terminal: the file descriptor of a terminal used by this node only; None if the node shares its process.
+        environment: the environment variables with which the node looks for files; by default the environment of the
+            process.
+        output: receives the lines that the node prints as its result; by default standard output.
+        terminal: the file descriptor of a terminal that only this node uses; None if the node shares its process.
     """
 
     name: str | None = None
@@ -72,7 +74,10 @@ class NodeOptions:
 
 
 class RunningNode(Protocol):
-    """A running node; some nodes also implement one of the protocols below, which their host checks for."""
+    """A running node.
+
+    Some nodes also implement one of the protocols below, for which their host checks.
+    """
 
     @property
     def node(self) -> Node:
@@ -84,7 +89,7 @@ class RunningNode(Protocol):
 
 @runtime_checkable
 class FinishingNode(RunningNode, Protocol):
-    """A node that finishes on its own."""
+    """A node that ends by itself."""
 
     finished: asyncio.Future[int]
     """Receives the exit status when the node is done; the node must then be closed."""
@@ -102,7 +107,7 @@ class LoadingNode(RunningNode, Protocol):
 
 @runtime_checkable
 class NodeWithDescription(RunningNode, Protocol):
-    """A node for which the host reports the findings about its robot description."""
+    """A node whose host reports the findings about its robot description."""
 
     @property
     def description_parameter(self) -> str:
@@ -114,17 +119,19 @@ class NodeWithFiles(RunningNode, Protocol):
     """A node that reloads its files when they are saved."""
 
     def follow_files(self, host: FileFollower) -> None:
-        """Let the host watch the node's files.
+        """Make the host watch the node's files.
 
-        Called once on the event loop after the node has started.
+        This method is called once on the event loop, after the node has started.
         """
 
 
 class SingleNode:
-    """The base of most nodes of this package: one node of the graph, `_node`, which is destroyed by `close`.
+    """The base class of most nodes of this package, which have one node in the graph, `_node`.
+
+    `close` destroys this node.
 
     Attributes:
-        DEFAULT_NAME: the name of a node without a given name; not set if each node gets a different name.
+        DEFAULT_NAME: the name of a node whose options do not set a name; not defined if each node has a different name.
     """
 
     DEFAULT_NAME: ClassVar[str]
@@ -137,7 +144,7 @@ class SingleNode:
         return self._node
 
     def close(self) -> None:
-        """Close the node."""
+        """Destroy the node."""
         self._node.destroy_node()
 
 
@@ -148,13 +155,16 @@ Factory = Callable[[Graph, NodeOptions], RunningNode]
 def create_node(
     graph: Graph, options: NodeOptions, default_name: str, *, any_parameters: bool = False
 ) -> tuple[Node, list[str]]:
-    """Create the node of the options, and return it with the arguments that are not ROS arguments.
+    """Create a node from options.
 
     Args:
         graph: the graph to which the node is added.
         options: the options of the node.
-        default_name: the name of the node if none is given.
+        default_name: the name of the node if the options do not set one.
         any_parameters: whether to declare all given parameters, and to accept undeclared ones.
+
+    Returns:
+        The node, and the command-line arguments that are not ROS arguments.
 
     Raises:
         LinkwrightError: a name, a remapping or a ROS argument is not valid.
@@ -165,7 +175,7 @@ def create_node(
 def create_node_of(
     node_class: Callable[..., N], graph: Graph, options: NodeOptions, default_name: str, *, any_parameters: bool = False
 ) -> tuple[N, list[str]]:
-    """Create a node as `create_node` does, by calling `node_class` with the arguments of `Node`.
+    """Create a node as `create_node` does, with a subclass of `Node` or a function that creates one.
 
     Raises:
         LinkwrightError: a name, a remapping or a ROS argument is not valid.
@@ -190,7 +200,7 @@ def create_node_of(
 
 @contextmanager
 def starting(node: Node) -> Iterator[None]:
-    """Log an error during a node's start as FATAL, destroy the node, and raise the error again."""
+    """On an error in the context, log it as FATAL, destroy the node and raise the error again."""
     try:
         yield
     except LinkwrightError as error:
@@ -205,9 +215,9 @@ def _full_name(name: str, namespace: str, remappings: list[tuple[str, str]]) -> 
 
 
 def _set_levels(graph: Graph, node: Node, ros: RosArguments) -> None:
-    """Apply ``--log-level``.
+    """Apply the options ``--log-level``.
 
-    Without a logger's name it applies only to this node, which may share its process.
+    An option without the name of a logger applies only to this node, which may share its process with other nodes.
     """
     if ros.log_level is not None:
         node.get_logger().set_level(ros.log_level)
@@ -216,7 +226,7 @@ def _set_levels(graph: Graph, node: Node, ros: RosArguments) -> None:
 
 
 class NodeRegistry(Mapping[tuple[str, str], Factory]):
-    """Finds the function or class that starts a node, by package and executable.
+    """A mapping from package and executable to the function or class that starts the node.
 
     Args:
         group: the group of the entry points.
@@ -227,7 +237,7 @@ class NodeRegistry(Mapping[tuple[str, str], Factory]):
 
     @cached_property
     def entry_points(self) -> dict[tuple[str, str], EntryPoint]:
-        """The entry points, by package and name."""
+        """The entry points by package and executable or plugin."""
         found: dict[tuple[str, str], EntryPoint] = {}
         for name, entry in extensions(self._group).items():
             package, _, node = name.partition("/")
@@ -262,7 +272,7 @@ class NodeRegistry(Mapping[tuple[str, str], Factory]):
 
 
 def default_name(package: str, executable: str) -> str | None:
-    """Return the default name of a node; None if only the node itself knows it."""
+    """Return the default name of a node, or None if only the node's own code determines it."""
     with suppress(LinkwrightError, KeyError):
         name: str | None = getattr(EXECUTABLES[package, executable], "DEFAULT_NAME", None)
         return name

@@ -1,4 +1,4 @@
-"""Parameters of nodes and controllers: a dataclass is the table of their names, types and defaults.
+"""Parameters of nodes and controllers, declared by a dataclass with their names, types and defaults.
 
     @dataclass(frozen=True, kw_only=True)
     class Gains:
@@ -12,11 +12,11 @@
         gains: Mapping[str, Gains] = for_each("joints", Gains)  # gains.JOINT.p
 
 The types are ``str``, ``float``, ``int``, ``bool``, and ``tuple[...]`` of them; ``float | None`` and ``bool | None``
-are declared without a value. A parameter that only Humble or only Jazzy has is declared if ``ROS_DISTRO`` names that
-distribution, or if a value is given, so files for either distribution can be used unchanged. Source:
-generate_parameter_library, which the controllers of ros2_controllers use.
+are declared without a value. Some parameters exist only in Humble or only in Jazzy. Such a parameter is declared if
+``ROS_DISTRO`` names that distribution, or if a value is given, so that files for either distribution can be used
+unchanged. Source: generate_parameter_library, which the controllers of ros2_controllers use.
 
-`declared` reads a table once, `ParameterTable` follows later changes.
+`declared` reads a table once; a `ParameterTable` follows later changes.
 """
 
 from __future__ import annotations
@@ -79,26 +79,28 @@ def parameter(
     only: str = "",
     later: Any = _SAME,
 ) -> Any:
-    """Declare a parameter with constraints, a description or a default that is not a constant.
+    """Declare a parameter with a constraint, a description or a default that varies.
 
     Args:
-        default: its value if none is given.
-        description: its purpose, with its unit.
+        default: the default value.
+        description: the purpose of the parameter, with its unit.
         read_only: whether the value cannot change after the declaration.
-        check: the constraint on its values.
-        only: the only distribution that has it: `HUMBLE` or `JAZZY`, each including its neighbours; empty if both do.
-        later: its default from Iron on, if that differs.
+        check: the constraint on the value.
+        only: the only distribution that has the parameter, `HUMBLE` or `JAZZY`, each including its neighbours; empty if
+            both have it.
+        later: the default from Iron on, if it differs.
     """
     return field(default=default, metadata={_ABOUT: _About(description, read_only, check, only, later)})
 
 
 def for_each(names: str, table: type[Any], *, below: str = "") -> Any:
-    """Declare a group of parameters for each name in another parameter, as ``gains.JOINT.p``.
+    """Declare a group of parameters for each name in another parameter, such as ``gains.JOINT.p``.
 
     Args:
-        names: the parameter with the names, which precedes this one in the same table; several, separated by blanks.
-        table: the dataclass with the parameters of one name.
-        below: the prefix of the parameters' names, if it differs from the name of the field.
+        names: the parameter that contains the names, which precedes this field in the same table; several parameters
+            are separated by spaces.
+        table: the dataclass with the parameters for one name.
+        below: the prefix of the parameters, if it differs from the name of the field.
     """
     return field(default_factory=dict, metadata={_NAMES: tuple(names.split()), _TABLE: table, _BELOW: below})
 
@@ -112,13 +114,13 @@ class _Declaration:
 
 
 def declared(node: Node, table: type[P], prefix: str = "", usual: P | None = None) -> P:
-    """Declare the parameters of a table, unless they are declared, and read them.
+    """Declare the parameters of a table unless they are declared already, and return their values.
 
     Args:
         node: the node.
         table: the dataclass.
-        prefix: the prefix of the names: the name of a plugin, for ``PLUGIN.parameter``.
-        usual: the defaults, if they are not those of the table.
+        prefix: the prefix of the names, such as the name of a plugin for ``PLUGIN.parameter``.
+        usual: the defaults to use instead of the defaults of the table.
 
     Raises:
         LinkwrightError: a value has another type (GRAPH201) or is not allowed (CTL101).
@@ -128,7 +130,7 @@ def declared(node: Node, table: type[P], prefix: str = "", usual: P | None = Non
 
 
 class ParameterTable(Generic[P]):
-    """The parameters of a node, declared from a dataclass; they follow later changes.
+    """The parameters of a node, declared by a dataclass and updated when they change.
 
     Args:
         node: the node.
@@ -138,7 +140,7 @@ class ParameterTable(Generic[P]):
         LinkwrightError: a value has another type (GRAPH201) or is not allowed (CTL101).
 
     Attributes:
-        values: the current parameters; another object after each change.
+        values: the current values, which are replaced by a new object on each change.
     """
 
     def __init__(self, node: Node, table: type[P]) -> None:
@@ -150,11 +152,11 @@ class ParameterTable(Generic[P]):
         node.add_post_set_parameters_callback(lambda _: self.refresh())
 
     def refresh(self) -> None:
-        """Read the parameters again, and declare the parameters of names that were added."""
+        """Read the parameters again, and declare the groups for names that were added."""
         self.values = self._read()
 
     def unknown(self) -> Iterator[tuple[str, Phrase | None]]:
-        """Yield the names of given parameters that do not exist, each with a suggestion of the intended name."""
+        """Yield each given parameter that does not exist, with a suggestion of the intended name or None."""
         for name in self._node.undeclared_overrides():
             if not name.startswith(_OF_EVERY_NODE):
                 yield name, did_you_mean(name, self._reader.declared)
@@ -175,10 +177,10 @@ class ParameterTable(Generic[P]):
 
 
 class _Reader:
-    """Declares the parameters of tables when they are first read.
+    """Declares and reads the parameters of tables.
 
     Attributes:
-        declared: the parameters that were declared by this reader or before, by name.
+        declared: the declared parameters by name, including those that were declared before.
     """
 
     def __init__(self, node: Node) -> None:
@@ -236,7 +238,7 @@ def _distribution() -> str:
 
 
 def _listed(names: Any) -> Iterable[str]:
-    """Return the names in a parameter that contains one or several names."""
+    """Return the names in a parameter value, which is a string or a sequence of strings."""
     return (names,) if isinstance(names, str) else names
 
 
@@ -249,7 +251,7 @@ def _kinds(table: Hashable) -> Mapping[str, Any]:
 
 
 def not_empty(name: str, value: Any) -> Phrase | None:
-    """Check that a text or a list is not empty; return the complaint or None."""
+    """Check that a string or sequence is not empty; return the error message, or None if it is valid."""
     return None if len(value) else phrase("Parameter '{name}' cannot be empty", name=name)
 
 
@@ -265,7 +267,7 @@ def above(limit: float) -> Check:
 
 
 def at_least(limit: float) -> Check:
-    """Return a validator that requires a value of at least a limit."""
+    """Return a validator that requires a value greater than or equal to a limit."""
     return lambda name, value: (
         None
         if value >= limit
@@ -279,7 +281,7 @@ def at_least(limit: float) -> Check:
 
 
 def one_of(*words: str) -> Check:
-    """Return a validator that accepts one of some words, or a list of them."""
+    """Return a validator that requires one of the given words, or a list of them."""
 
     def check(name: str, value: Any) -> Phrase | None:
         for item in (value,) if isinstance(value, str) else value:

@@ -31,15 +31,17 @@ _SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP
 
 
 def main(package: str, executable: str, arguments: Sequence[str]) -> int:
-    """Run a node until it ends, or until SIGINT, SIGTERM or SIGHUP, which end it cleanly with status 0.
+    """Run a node until it ends or a signal arrives.
+
+    SIGINT, SIGTERM and SIGHUP close the node and end the program with status 0.
 
     Args:
         package: the package of the node.
         executable: the executable of the node.
-        arguments: the command line, ROS arguments and others.
+        arguments: the command line, with ROS arguments and others.
 
     Returns:
-        The exit status: 0, the node's own, or 1 if the node could not start.
+        The exit status: 0, the status of the node, or 1 if the node could not start.
     """
     from linkwright.graph.command_line.log_setup import set_up
     from linkwright.graph.command_line.ros_arguments import parse
@@ -73,8 +75,8 @@ async def _run(factory: Factory, arguments: list[str], logging: Logging, *, join
     ended = asyncio.Event()
     for number in _SIGNALS:
         if number == getattr(signal, "SIGHUP", None) and signal.getsignal(number) is signal.SIG_IGN:
-            continue  # ignored, as set by nohup
-        # Event loops of some platforms do not support this; there KeyboardInterrupt ends the process.
+            continue  # keep ignoring the signal, as nohup requests
+        # The event loops of some platforms do not support signal handlers; KeyboardInterrupt then ends the process.
         with contextlib.suppress(NotImplementedError):
             loop.add_signal_handler(number, ended.set)
     graph = Graph(on_log=logging.sink, levels=logging.levels)
@@ -93,10 +95,7 @@ async def _run(factory: Factory, arguments: list[str], logging: Logging, *, join
 
 
 def _terminal() -> int | None:
-    """Return the file descriptor of the terminal on standard input.
-
-    Returns None if it is not a terminal.
-    """
+    """Return the file descriptor of standard input if it is a terminal, otherwise None."""
     try:
         descriptor = sys.stdin.fileno()
     except (AttributeError, OSError, ValueError):

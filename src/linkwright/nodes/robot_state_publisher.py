@@ -1,13 +1,13 @@
 """robot_state_publisher: publishes transforms from joint states.
 
-It follows the ROS 2 node of that name (Humble 3.0.3 and later; see the notes on each rule), with these deliberate
+The node follows the ROS 2 node of that name (Humble 3.0.3 and later; see the notes on each rule), with these deliberate
 differences:
 
-- A message that the throttle holds back is published when it is due, unless a newer one arrived before. The ROS node
-  drops it, so the last move of a slider can be lost.
-- A message that repeats the last positions does not hold back a move that arrives right after it (see `Throttle`).
+- A message that the throttle delays is published as soon as the throttle permits, unless a newer one arrives before.
+  The ROS node drops the message, so that the last move of a slider can be missing.
+- A message that repeats the last positions does not delay a move that arrives right after it (see `Throttle`).
 - A new description resets the throttle, and a new ``frame_prefix`` publishes the fixed transforms again.
-- ``publish_frequency`` 0, for which the ROS node divides by zero, is refused.
+- ``publish_frequency`` 0, for which the ROS node divides by zero, is rejected.
 - ``/tf_static`` contains only the transforms of the current description.
 """
 
@@ -43,16 +43,16 @@ Array = NDArray[np.float64]
 
 
 class JointMotion:
-    """Poses of child links in their parent links as functions of joint positions.
+    """The poses of child links in their parent links as functions of joint positions.
 
     A rotation by q about an axis composes the rotation r of the joint's origin with (axis sin q/2, cos q/2), which is
-    r cos q/2 + (r * axis) sin q/2; a translation along the axis adds q times the rotated axis. So each pose is
-    ``fixed + cosine cos q/2 + sine sin q/2 + linear q`` with constant rows, and all joints take a few array operations
-    whatever their types are.
+    r cos q/2 + (r * axis) sin q/2; a translation along the axis adds q times the rotated axis. Each pose is therefore
+    ``fixed + cosine cos q/2 + sine sin q/2 + linear q`` with constant rows, and a few array operations compute all
+    joints, regardless of their types.
 
     Args:
-        joints: the joints. Revolute, continuous and prismatic joints move, all others stay at their origin. Axes need
-            not be of unit length (KDL normalises them); a joint with a zero axis does not move.
+        joints: the joints. Revolute, continuous and prismatic joints move; all others stay at their origin. Axes need
+            not be of unit length (KDL normalises them). A joint with a zero axis does not move.
     """
 
     def __init__(self, joints: Sequence[Joint]) -> None:
@@ -63,7 +63,7 @@ class JointMotion:
     def poses(self, positions: Array) -> Array:
         """Return the poses for joint positions of shape (n,), in radians or metres.
 
-        The poses have shape (n, 7): x y z (metres) and qx qy qz qw.
+        The result has shape (n, 7): x y z in metres, and the quaternion qx qy qz qw.
         """
         half = (0.5 * positions)[:, np.newaxis]
         turned: Array = self._cosine * np.cos(half)
@@ -73,7 +73,7 @@ class JointMotion:
         return turned
 
     def select(self, rows: Sequence[int]) -> JointMotion:
-        """Return the motion of some of the joints, in the order given."""
+        """Return the motion of the joints with the given indices, in the given order."""
         selected = JointMotion(())
         selected._fixed, selected._cosine = self._fixed[rows], self._cosine[rows]
         selected._sine, selected._linear = self._sine[rows], self._linear[rows]
@@ -101,9 +101,9 @@ where such a link is must come from elsewhere."""
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Recipe:
-    """The conversion of messages with a certain list of joint names to transforms.
+    """The conversion to transforms of messages that have a certain list of joint names.
 
-    Transform i is that of joint i of `motion` at position ``message[source[i]] * factor[i] + offset[i]``.
+    Transform i is the pose of joint i of `motion` at position ``message[source[i]] * factor[i] + offset[i]``.
     """
 
     parents: tuple[str, ...]
@@ -120,11 +120,11 @@ class Recipe:
 
 
 class RobotTransforms:
-    """The transforms of one robot.
+    """Computes the transforms of one robot.
 
     Args:
         robot: the description.
-        frame_prefix: the prefix of every frame name, added without a separator.
+        frame_prefix: the prefix of every frame name, without a separator.
     """
 
     def __init__(self, robot: Robot, frame_prefix: str) -> None:
@@ -145,9 +145,9 @@ class RobotTransforms:
     def recipe(self, names: Sequence[str]) -> Recipe:
         """Return the conversion to transforms for messages with these joint names.
 
-        Names that do not belong to moving joints are ignored. A joint that mimics a joint in the message follows it,
-        unless the message contains a position for the joint itself; a joint that mimics such a joint in turn does not
-        follow.
+        Names of joints that do not move or do not exist are ignored. A joint that mimics a joint in the message follows
+        that joint, unless the message contains a position for the mimic joint itself. Chains are not resolved:
+        a joint that mimics a mimic joint does not follow.
         """
         key = tuple(names)
         recipe = self._recipes.get(key)
@@ -182,7 +182,7 @@ class RobotTransforms:
 
 
 class JointGroup:
-    """The joints of a message for a throttle; there is one object for each list of names."""
+    """The joints of messages with the same list of names, for a throttle."""
 
     __slots__ = ("positions", "rows")
 
@@ -195,10 +195,11 @@ class JointGroup:
 class Throttle:
     """Decides when transforms may be published, from the times at which each joint was published.
 
-    Times are in nanoseconds; 0 is never. A message is published when its stamp is at least an interval after the last
-    publication of the message's joint that has waited longest. Messages that repeat the previous positions, such as the
-    periodic messages of joint_state_publisher, must keep that interval from all messages; messages with new positions
-    only from other messages with new positions. So a repeated message does not hold up a move that follows it.
+    Times are in nanoseconds, and 0 means never. A message may be published when its stamp is at least one interval
+    after the last publication of the joint that was published least recently. Messages that repeat the previous
+    positions, such as the periodic messages of joint_state_publisher, must keep that interval from all messages.
+    Messages with new positions must keep it only from other messages with new positions, so that a repeated message
+    does not delay a move that follows it.
 
     Args:
         interval_ns: the minimum time between two messages about the same joints.
@@ -213,7 +214,7 @@ class Throttle:
         self._stamp_ns: NDArray[np.int64] = np.zeros(0, dtype=np.int64)
 
     def group(self, names: Sequence[str]) -> JointGroup:
-        """Return the group of these joints, at least one."""
+        """Return the group for a list of joint names, which must not be empty."""
         key = tuple(names)
         group = self._groups.get(key)
         if group is None:
@@ -226,21 +227,27 @@ class Throttle:
         return group
 
     def is_move(self, group: JointGroup, positions: FloatSequence) -> bool:
-        """Return whether these positions differ from those published last."""
+        """Return whether positions differ from the last published positions of the group."""
         return group.positions is None or not np.array_equal(group.positions, positions)
 
     def earliest_stamp_ns(self, group: JointGroup, now_ns: int, *, move: bool) -> int:
-        """Return the earliest stamp at which a message may be published."""
+        """Return the earliest stamp at which a message may be published.
+
+        Args:
+            group: the joints of the message.
+            now_ns: the current time.
+            move: whether the message has new positions.
+        """
         before = self._moved_ns if move else self._sent_ns
         return min(int(before[group.rows].min()), now_ns) + self.interval_ns
 
     def is_in_order(self, group: JointGroup, stamp_ns: int) -> bool:
-        """Return whether all joints were published before, and none with a later stamp."""
+        """Return whether every joint was published before, and none with a later stamp than this one."""
         stamps = self._stamp_ns[group.rows]
         return bool(stamps.all() and (stamps <= stamp_ns).all())
 
     def published(self, group: JointGroup, positions: FloatSequence, stamp_ns: int, at_ns: int) -> None:
-        """Record that a message with a stamp was published at a time."""
+        """Record that a message with the stamp `stamp_ns` was published at the time `at_ns`."""
         if self.is_move(group, positions):
             self._moved_ns[group.rows] = at_ns
         self._sent_ns[group.rows] = at_ns
@@ -248,7 +255,7 @@ class Throttle:
         group.positions = np.array(positions, dtype=np.float64)
 
     def clear(self) -> None:
-        """Forget all publications."""
+        """Discard the record of all publications."""
         for times in (self._sent_ns, self._moved_ns, self._stamp_ns):
             times[:] = 0
 
@@ -267,7 +274,7 @@ _NANOSECONDS_PER_MILLISECOND = 1_000_000
 
 @dataclass(slots=True, eq=False)
 class _Held:
-    """A message that is held back until it is due."""
+    """A message that is delayed until the throttle permits its publication."""
 
     message: JointState
     release_ns: int
@@ -459,9 +466,9 @@ class RobotStatePublisher(SingleNode):
         stamp_ns = message.header.stamp.nanoseconds
         if self._throttle.is_in_order(group, stamp_ns):
             self._publish_moving(message, stamp_ns)
-            # Count it as published now, not at its stamp; otherwise a source that is slightly too fast would pass the
-            # limit,
-            # because each message would be held only for a moment.
+            # Count the message as published now, not at its stamp. Otherwise a source that is slightly too fast would
+            # exceed the
+            # limit, because each message would be delayed only for a moment.
             self._throttle.published(group, message.position, stamp_ns, held.release_ns)
 
     def _drop_held(self, group: JointGroup) -> None:

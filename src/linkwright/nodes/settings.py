@@ -1,4 +1,4 @@
-"""Declaration of node parameters: required ones, values from command-line arguments, and unknown ones."""
+"""Declares the parameters of nodes that are required or set by command-line arguments."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ _EVERYWHERE = ("qos_overrides.", "start_type_description_service", "strict_callb
 
 
 def declare_required(node: Node, name: str, kind: ParameterType, usage: str) -> Any:
-    """Declare a parameter without a default, and read it.
+    """Declare a parameter without a default, and return its value.
 
     Args:
         node: the node.
         name: the name of the parameter.
         kind: the type of the parameter.
-        usage: how the node is started, for the hint.
+        usage: a command line that starts the node, for the hint.
 
     Raises:
-        LinkwrightError: NODE431, the parameter is not set; GRAPH201, it has another type.
+        LinkwrightError: NODE431, the parameter is not set; GRAPH201, the value has another type.
     """
     node.declare_parameter(name, kind)
     value = node.get_parameter_or(name, Parameter(name)).value
@@ -38,13 +38,13 @@ def declare_required(node: Node, name: str, kind: ParameterType, usage: str) -> 
 def options_from_words(
     options: NodeOptions, words: Sequence[str], names: Mapping[str, Callable[[str], Any]], usage: str
 ) -> NodeOptions:
-    """Convert command-line arguments to parameters in the options.
+    """Return the options with parameters that are set by command-line arguments.
 
     Args:
         options: the options of the node.
         words: the arguments without ROS arguments.
-        names: the parameters that the arguments set, in order, each with its converter; there may be fewer arguments.
-        usage: how the node is started, for the hint.
+        names: the parameters that the arguments set, in order, each with its converter; later arguments may be omitted.
+        usage: a command line that starts the node, for the hint.
 
     Raises:
         LinkwrightError: NODE432, an argument is not a value of its parameter, or there are more arguments than names.
@@ -66,15 +66,15 @@ def _converted(word: str, name: str, convert: Callable[[str], Any], hint: Phrase
 
 
 def words_of(options: NodeOptions) -> list[str]:
-    """Return the arguments of a node that are not ROS arguments."""
+    """Return the command-line arguments of a node that are not ROS arguments."""
     return parse(options.arguments).others
 
 
 def positive(node: Node, name: str, value: float) -> float:
-    """Check that a parameter is greater than zero, and return it.
+    """Return the value of a parameter after checking that it is greater than zero.
 
     Raises:
-        LinkwrightError: NODE433, it is not.
+        LinkwrightError: NODE433, the value is not greater than zero.
     """
     if not value > 0:
         raise bad_value(name, value, node.get_name())
@@ -91,10 +91,10 @@ def bad_value(name: str, value: object, node: str, known: Sequence[str] = ()) ->
 
 
 def log_unknown(node: Node) -> None:
-    """Log the given parameters that the node does not have; called once all are declared.
+    """Log the given parameters that the node does not have; call this after all are declared.
 
-    Names that look misspelt cause a warning. Parameters for all nodes of a launch (``/**``) reach nodes that do not
-    have them, so other names are only logged as information.
+    A name that looks misspelt causes a warning. Other names are logged only as information, because parameters for all
+    nodes of a launch (``/**``) also reach nodes that do not have them.
     """
     known = node.parameter_names()
     strange = [name for name in node.undeclared_overrides() if not name.startswith(_EVERYWHERE)]

@@ -1,4 +1,4 @@
-"""Stopping a robot when the publisher of forwarded velocities is lost (see `Commander`)."""
+"""Stops a robot when the publisher of forwarded velocities disappears (see `Commander`)."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ def send_stop(node: Node, publisher: Publisher[Any], lost: EndpointInfo) -> None
 
     Args:
         node: the node that forwards velocities.
-        publisher: the publisher of velocities.
-        lost: the publisher of the last forwarded velocity.
+        publisher: the node's publisher of velocities.
+        lost: the publisher that sent the last forwarded velocity and has disappeared.
     """
     message = publisher.msg_type()
     if publisher.type_name == TWIST_STAMPED:

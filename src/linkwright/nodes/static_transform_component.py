@@ -1,4 +1,4 @@
-"""tf2_ros' component ``StaticTransformBroadcasterNode``: static_transform_publisher for a component container."""
+"""The component ``StaticTransformBroadcasterNode`` of tf2_ros: static_transform_publisher for containers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""static_transform_publisher of tf2_ros: publishes one static transform from the command line on ``/tf_static``."""
+"""static_transform_publisher of tf2_ros: publishes a static transform given on the command line."""
 
 from __future__ import annotations
 
@@ -38,9 +38,10 @@ _OLD_WITH_QUATERNION = (*_TRANSLATION, *_QUATERNION, *_FRAMES)
 
 @dataclass(frozen=True, slots=True)
 class StaticTransform:
-    """The parsed command line: pose (metres, unit quaternion x y z w) of the child frame in the parent frame.
+    """The pose of the child frame in the parent frame, from the command line.
 
-    `old_style` is true if the values were given by position, which tf2_ros calls deprecated.
+    The position is in metres, the orientation a unit quaternion x y z w. `old_style` is true if the values were
+    positional arguments, which tf2_ros calls deprecated.
     """
 
     translation: tuple[float, float, float]
@@ -51,12 +52,12 @@ class StaticTransform:
 
 
 def parse_arguments(arguments: Sequence[str]) -> StaticTransform:
-    """Parse the command line: named options, or the older eight or nine positional values.
+    """Parse the command line, with named options or the older eight or nine positional values.
 
     The positional forms are ``x y z yaw pitch roll frame child`` and ``x y z qx qy qz qw frame child``.
 
     Raises:
-        LinkwrightError: the command line is invalid; the text is that of tf2_ros.
+        LinkwrightError: the command line is invalid; the message is tf2_ros's.
     """
     given, positional = _split(arguments)
     old_style = bool(positional)
@@ -116,7 +117,7 @@ class StaticTransformPublisher(SingleNode):
 
 
 def _random_suffix() -> str:
-    """Return random letters and digits for the node's name, unique among processes, as in tf2_ros."""
+    """Return random letters and digits that make the node's name unique, as in tf2_ros."""
     return "".join(secrets.choice(string.ascii_letters + string.digits) for _ in range(16))
 
 

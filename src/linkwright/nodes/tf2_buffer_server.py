@@ -1,4 +1,4 @@
-"""buffer_server of tf2_ros: looks up transforms for other processes, which then need not receive all of ``/tf``."""
+"""buffer_server of tf2_ros: looks up transforms for processes that do not receive ``/tf`` themselves."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ _NUMBERS: dict[type[TransformException], int] = {
 
 
 class Tf2BufferServer(SingleNode):
-    """The running buffer_server node, which serves the action ``tf2_buffer_server`` (LookupTransform of tf2_msgs).
+    """The running buffer_server node, with the action ``tf2_buffer_server`` (tf2_msgs LookupTransform).
 
-    A goal whose transform is not available yet is retried until its timeout. Errors are part of the result, so every
-    goal that is not canceled succeeds, as in tf2_ros.
+    If the transform of a goal is not available yet, the lookup is repeated until the goal's timeout. As in tf2_ros,
+    errors are part of the result, so every goal that is not canceled succeeds.
     """
 
     DEFAULT_NAME = "tf_buffer"

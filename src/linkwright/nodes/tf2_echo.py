@@ -98,10 +98,10 @@ def describe(transform: Any) -> str:
 
 
 def _roll_pitch_yaw(turn: NDArray[np.float64]) -> tuple[float, float, float]:
-    """Return the angles of a rotation matrix as computed by tf2, with its signs of zero."""
+    """Return roll, pitch and yaw of a rotation matrix, with the signs of zero as in tf2."""
     (xx, xy, xz), (yx, _, _), (zx, zy, zz) = turn.tolist()
     if abs(zx) >= 1.0:
-        # Roll and yaw rotate about the same axis, so the whole angle is assigned to roll.
+        # In gimbal lock, roll and yaw rotate about the same axis, so the whole angle is assigned to roll.
         delta = atan2(xy, xz) if zx < 0.0 else atan2(-xy, -xz)
         return delta, pi / 2.0 if zx < 0.0 else -pi / 2.0, 0.0
     pitch = -asin(zx)

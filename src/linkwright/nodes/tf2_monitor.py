@@ -1,4 +1,4 @@
-"""tf2_monitor of tf2_ros: reports publishers of transforms, their rates and delays."""
+"""tf2_monitor of tf2_ros: reports the publishers of transforms with their rates and delays."""
 
 from __future__ import annotations
 
@@ -24,7 +24,10 @@ _SHORTEST_SPAN_S = 1e-8
 
 
 class Tf2Monitor(SingleNode):
-    """The running tf2_monitor node, which reports every ten seconds on all frames or the chain between two frames."""
+    """The running tf2_monitor node, which prints a report every ten seconds.
+
+    The report covers all frames, or the chain between two frames.
+    """
 
     DEFAULT_NAME = "tf2_monitor_main"
 
@@ -76,7 +79,7 @@ class Tf2Monitor(SingleNode):
             self._report()
 
     def _begin(self) -> bool:
-        """Return whether the chain between the two frames is known, and start reporting if so."""
+        """Start reporting if the chain between the two frames is known, and return whether it is."""
         what = "all frames"
         if self._ends is not None:
             first, second = self._ends

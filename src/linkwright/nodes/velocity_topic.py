@@ -1,4 +1,4 @@
-"""Publication of velocities as geometry_msgs/msg/Twist or TwistStamped, as expected by the subscribers."""
+"""Publishes velocities as geometry_msgs/msg/Twist or TwistStamped, whichever the subscribers expect."""
 
 from __future__ import annotations
 
@@ -13,9 +13,10 @@ _DEPTH = 10
 
 
 def velocity_types(node: Node, topic: str, stamped: bool | None) -> tuple[str, ...]:
-    """Return the types to subscribe to for velocities: one type if `stamped` is set, otherwise both.
+    """Return the message types to subscribe to for velocities.
 
-    The type that is already published is the first one, so no warning about a type mismatch is logged.
+    The result is one type if `stamped` is set, otherwise both types. A type that is already published comes first, so
+    that no warning about a type mismatch is logged.
     """
     if stamped is not None:
         return (TWIST_STAMPED if stamped else TWIST,)
@@ -24,18 +25,18 @@ def velocity_types(node: Node, topic: str, stamped: bool | None) -> tuple[str, .
 
 
 class VelocityTopic:
-    """A topic of velocities; nothing is published while it has another type.
+    """Publishes velocities on a topic, unless the topic has a type other than Twist and TwistStamped.
 
     Args:
         node: the node that publishes.
         topic: the name before remapping.
-        stamped: whether to publish TwistStamped; None to follow the topic's subscribers, and to publish Twist if there
-            are none or some of each.
+        stamped: whether to publish TwistStamped. None to publish the type that the subscribers expect, or Twist if
+            there are no subscribers or subscribers of both types.
         frame_id: the frame in the header of a TwistStamped.
 
     Attributes:
         name: the full name.
-        foreign: a type on the topic that is neither of the two; None if there is none.
+        foreign: a type on the topic that is neither Twist nor TwistStamped, or None.
 
     Raises:
         LinkwrightError: the name is not a topic name.
@@ -57,10 +58,10 @@ class VelocityTopic:
         return self._publisher.type_name if self._publisher is not None else ""
 
     def review(self, *, may_change: bool = True) -> int:
-        """Switch to the type of the subscribers.
+        """Change the published type to the type that the subscribers expect.
 
         Args:
-            may_change: whether the type may change; it must not while the robot moves.
+            may_change: whether the type may change; the type must not change while the robot moves.
 
         Returns:
             The number of subscribers with the published type.
@@ -82,9 +83,11 @@ class VelocityTopic:
         return listeners.count(self._publisher.type_name)
 
     def publish(self, linear: Sequence[float], angular: Sequence[float]) -> None:
-        """Publish a velocity: linear along x, y, z in m/s, and angular in rad/s.
+        """Publish a velocity, unless the topic is closed.
 
-        Does nothing if the topic is closed.
+        Args:
+            linear: the linear velocity along x, y and z, in m/s.
+            angular: the angular velocity about x, y and z, in rad/s.
         """
         publisher = self._publisher
         if publisher is None:
@@ -104,7 +107,7 @@ class VelocityTopic:
         self.publish((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
     def close(self) -> None:
-        """Remove the publisher."""
+        """Destroy the publisher."""
         if self._publisher is not None:
             self._node.destroy_publisher(self._publisher)
             self._publisher = None

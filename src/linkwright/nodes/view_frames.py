@@ -1,4 +1,4 @@
-"""view_frames of tf2_tools: records transforms for some seconds and draws the tree of frames."""
+"""view_frames of tf2_tools: records transforms for a few seconds and draws the tree of frames."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def frames_as_dot(frames: Mapping[str, Mapping[str, Any]], recorded_s: float) ->
     """Return the tree of frames in Graphviz's language.
 
     Args:
-        frames: the buffer's data on each frame, by name.
+        frames: the transform buffer's data about each frame, by name.
         recorded_s: the time of the recording, in seconds since the epoch.
     """
     if not frames:

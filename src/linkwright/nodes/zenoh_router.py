@@ -1,4 +1,4 @@
-"""``rmw_zenohd``: the router by which nodes of rmw_zenoh_cpp find each other."""
+"""``rmw_zenohd``: the router through which nodes of rmw_zenoh_cpp discover each other."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from linkwright.nodes.options import NodeOptions, SingleNode, create_node
 
 
 class ZenohRouter(SingleNode):
-    """A running Zenoh router, at tcp/localhost:7447 unless the settings give another address.
+    """A running Zenoh router, at tcp/localhost:7447 unless the settings name another address.
 
-    The settings are those of rmw_zenohd, ``ZENOH_ROUTER_CONFIG_URI`` and ``ZENOH_CONFIG_OVERRIDE``. Unlike rmw_zenohd,
-    the router accepts only connections from this machine by default. Its node is hidden.
+    The settings are those of rmw_zenohd, ``ZENOH_ROUTER_CONFIG_URI`` and ``ZENOH_CONFIG_OVERRIDE``. By default, the
+    router accepts only connections from this machine, unlike rmw_zenohd. The router's node is hidden.
 
     Args:
         graph: the graph to which the node is added.

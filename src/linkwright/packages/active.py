@@ -12,7 +12,7 @@ _active: ContextVar[PackageFinder | None] = ContextVar("linkwright_package_finde
 
 
 def current_finder() -> PackageFinder:
-    """Return the finder of the innermost `use_finder`, or a new one that starts in the current folder."""
+    """Return the finder of the innermost `use_finder`, or a new finder that starts in the current folder."""
     return _active.get() or PackageFinder()
 
 
@@ -23,7 +23,7 @@ def active_finder() -> PackageFinder | None:
 
 @contextmanager
 def use_finder(finder: PackageFinder) -> Iterator[PackageFinder]:
-    """Make `current_finder` return a finder inside a ``with`` block."""
+    """Make `current_finder` and `active_finder` return a finder inside a ``with`` block."""
     token = _active.set(finder)
     try:
         yield finder

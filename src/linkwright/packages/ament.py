@@ -1,9 +1,9 @@
 """Installed packages: the ament resource index and colcon's ``install`` folders.
 
-An ament package at a prefix has the marker ``share/ament_index/resource_index/packages/NAME`` and keeps its files
-in ``share/NAME``. colcon creates a workspace's ``install`` folder either as one prefix for all packages
-(``--merge-install``) or with one prefix for each package. With ``--symlink-install`` the files in ``share`` are
-links to the sources; the returned paths are those in ``share``, with links unresolved, as in ROS.
+An ament package at a prefix has the marker ``share/ament_index/resource_index/packages/NAME`` and its files in
+``share/NAME``. colcon creates a workspace's ``install`` folder either as one prefix for all packages
+(``--merge-install``) or with one prefix for each package. With ``--symlink-install``, the files in ``share`` are links
+to the sources. As in ROS, the returned paths are those in ``share``, with links unresolved.
 """
 
 from __future__ import annotations
@@ -25,30 +25,33 @@ _COLCON_LAYOUT = ".colcon_install_layout"
 
 
 def install_prefix(share: Path) -> Path:
-    """Return the prefix of a package: the folder that contains its ``share/NAME``, or its source folder."""
+    """Return the install prefix of a package, given its share folder.
+
+    For a package in its sources, this is the source folder.
+    """
     return share.parents[1] if is_installed(share) else share
 
 
 def is_installed(share: Path) -> bool:
-    """Return whether a share folder belongs to an installed package, not to a source tree."""
+    """Return whether a share folder belongs to an installed package, rather than a source tree."""
     return share.parent.name == "share"
 
 
 def environment_prefixes(environment: Mapping[str, str]) -> list[Path]:
-    """Return the prefixes in ``AMENT_PREFIX_PATH``, in its order."""
+    """Return the prefixes in ``AMENT_PREFIX_PATH``, in their order."""
     return [Path(entry) for entry in environment.get(PREFIX_PATH, "").split(os.pathsep) if entry]
 
 
 def is_share_of_prefix(folder: Path) -> bool:
-    """Return whether a folder is the ``share`` of a prefix, by its name and an ament resource index."""
+    """Return whether a folder is the ``share`` folder of a prefix with an ament resource index."""
     return folder.name == "share" and (folder.parent / _MARKERS).is_dir()
 
 
 def share_in_prefix(prefix: Path, name: str) -> Path | None:
-    """Return the share folder of a package in one prefix, or None.
+    """Return the share folder of a package in one prefix, or None if the prefix does not contain it.
 
-    A ``package.xml`` in the share folder suffices if the index marker was forgotten, a frequent mistake in hand-written
-    ``setup.py`` files.
+    A ``package.xml`` in the share folder suffices, because hand-written ``setup.py`` files often do not install the
+    index marker.
     """
     share = prefix / "share" / name
     if (prefix / _MARKERS / name).is_file() or (share / MANIFEST).is_file():
@@ -71,7 +74,10 @@ def is_colcon_install(folder: Path) -> bool:
 
 
 def share_in_install(install: Path, name: str) -> Path | None:
-    """Return the share folder of a package in a colcon install folder of either layout, or None."""
+    """Return the share folder of a package in a colcon install folder of either layout.
+
+    The result is None if the folder does not contain the package.
+    """
     return share_in_prefix(install / name, name) or share_in_prefix(install, name)
 
 

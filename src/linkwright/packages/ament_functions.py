@@ -1,4 +1,4 @@
-"""The functions of ``ament_index_python.packages``, implemented with the current package finder."""
+"""The functions of ``ament_index_python.packages`` for the current package finder."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ def get_package_share_path(package_name: str, print_warning: bool = True) -> Pat
     """Return the share folder of a package.
 
     Raises:
-        PackageNotFoundError: PKG101 if there is no such package.
+        PackageNotFoundError: PKG101, there is no such package.
     """
     return current_finder().share(package_name)
 
@@ -21,7 +21,7 @@ def get_package_share_directory(package_name: str, print_warning: bool = True) -
     """Return the share folder of a package as a string.
 
     Raises:
-        PackageNotFoundError: PKG101 if there is no such package.
+        PackageNotFoundError: PKG101, there is no such package.
     """
     return str(current_finder().share(package_name))
 
@@ -30,7 +30,7 @@ def get_package_prefix(package_name: str) -> str:
     """Return the install prefix of a package.
 
     Raises:
-        PackageNotFoundError: PKG101 if there is no such package.
+        PackageNotFoundError: PKG101, there is no such package.
     """
     return str(install_prefix(current_finder().share(package_name)))
 

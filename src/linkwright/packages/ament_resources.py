@@ -1,7 +1,7 @@
 """The ament resource index, in which packages register resources (``ament_index_python.resources``).
 
-Packages in their sources count as registered under the type ``packages``. Their other resources are known only when
-they are built.
+Packages in source trees count as registered under the type ``packages``. Their other resources are known only after a
+build.
 """
 
 from __future__ import annotations
@@ -18,18 +18,18 @@ _SEPARATORS = ("/", "\\")
 
 
 class InvalidResourceTypeNameError(Exception):
-    """Raised when the name of a resource type is empty or a path."""
+    """Raised when the name of a resource type is empty or contains a path separator."""
 
 
 class InvalidResourceNameError(Exception):
-    """Raised when the name of a resource is empty or a path."""
+    """Raised when the name of a resource is empty or contains a path separator."""
 
 
 def get_search_paths() -> list[str]:
     """Return the prefixes in which resources are searched, in order.
 
     Raises:
-        LookupError: if there are none.
+        LookupError: there are no such prefixes.
     """
     prefixes = [str(prefix) for prefix in _prefixes() if prefix.is_dir()]
     if not prefixes:
@@ -38,13 +38,13 @@ def get_search_paths() -> list[str]:
 
 
 def get_resource(resource_type: str, resource_name: str) -> tuple[str, str]:
-    """Return the content of a resource and its prefix.
+    """Return the content of a resource, and the prefix that contains the resource.
 
     Raises:
-        LookupError: if there is no such resource.
-        OSError: if the resource cannot be read.
-        InvalidResourceTypeNameError: if the type is invalid.
-        InvalidResourceNameError: if the name is invalid.
+        LookupError: there is no such resource.
+        OSError: the resource cannot be read.
+        InvalidResourceTypeNameError: the type is invalid.
+        InvalidResourceNameError: the name is invalid.
     """
     prefix = _found(resource_type, resource_name)
     if prefix is None:
@@ -57,8 +57,8 @@ def has_resource(resource_type: str, resource_name: str) -> str | bool:
     """Return the prefix that contains a resource, or False if there is no such resource.
 
     Raises:
-        InvalidResourceTypeNameError: if the type is invalid.
-        InvalidResourceNameError: if the name is invalid.
+        InvalidResourceTypeNameError: the type is invalid.
+        InvalidResourceNameError: the name is invalid.
     """
     prefix = _found(resource_type, resource_name)
     return False if prefix is None else str(prefix)
@@ -68,7 +68,7 @@ def get_resources(resource_type: str) -> dict[str, str]:
     """Return the resources of a type: name -> prefix.
 
     Raises:
-        InvalidResourceTypeNameError: if the type is invalid.
+        InvalidResourceTypeNameError: the type is invalid.
     """
     _check_type(resource_type)
     found: dict[str, str] = {}
@@ -105,7 +105,7 @@ def _check_type(kind: str) -> None:
 
 
 def _prefixes() -> list[Path]:
-    """Return the prefixes of the environment, and those of installed packages that are not sourced."""
+    """Return the prefixes of the environment, and the prefixes of installed packages that are not sourced."""
     shares = current_finder().packages().values()
     unsourced = (install_prefix(share) for share in shares if is_installed(share))
     return list(dict.fromkeys([*environment_prefixes(os.environ), *unsourced]))

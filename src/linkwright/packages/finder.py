@@ -1,4 +1,4 @@
-"""The package finder, for the environment, colcon workspaces, source trees and shipped packages."""
+"""The finder for packages in the environment, colcon workspaces, source trees and shipped packages."""
 
 from __future__ import annotations
 
@@ -27,18 +27,20 @@ START_VARIABLE = "LINKWRIGHT_START"
 
 
 class PackageNotFoundError(LinkwrightError, KeyError):
-    """Raised when no package with a name is found in any place (PKG101).
+    """Raised when no package with a name is found (PKG101).
 
-    It is also a KeyError, like the exception with the same name in ``ament_index_python``, so that launch files that
-    catch that exception continue to work.
+    This class is also a KeyError, like the exception with the same name in ``ament_index_python``, so that launch files
+    that catch that exception continue to work.
 
     Args:
-        searched: the places that were searched.
-        meant: the hint that names the package that may be meant.
+        name: the name that was searched for.
+        searched: the descriptions of the locations that were searched.
+        meant: the hint that names a similar package, or None.
+        is_slip: see the attribute.
 
     Attributes:
         name: the name that was searched for.
-        is_slip: whether it is the misspelt name of an existing package.
+        is_slip: whether the name is a misspelling of an existing package's name.
     """
 
     def __init__(self, name: str, searched: Sequence[str], meant: Phrase | None, *, is_slip: bool) -> None:
@@ -52,23 +54,23 @@ class PackageNotFoundError(LinkwrightError, KeyError):
 class PackageFinder:
     """A finder for ROS packages in the usual layouts of ROS workspaces.
 
-    The places are searched in this order:
+    The locations are searched in this order:
 
     1. `extra`, given by the caller;
     2. the prefixes of ``AMENT_PREFIX_PATH`` (a sourced ROS or workspace);
     3. colcon's ``install`` folders in the start folders and in the folders above them, merged or isolated, and the
        prefix that contains a start folder, such as ``/opt/ros/humble`` if it is not sourced;
     4. source trees: the package that contains a start folder and its sibling packages, the packages below
-       a start folder, and those below ``src`` of the folders above it;
+       a start folder, and the packages below ``src`` in the folders above it;
     5. the packages shipped with Linkwright;
-    6. our substitutes for ROS packages that launch files include; see `linkwright.packages.share_layout`.
+    6. Linkwright's substitutes for ROS packages that launch files include; see `linkwright.packages.share_layout`.
 
-    Nothing is read from disk before it is needed, and a search through source trees stops at the package.
+    Nothing is read from disk before it is needed. The search through a source tree does not enter the packages in it.
 
     Args:
         start: the user's folder, or several folders in order of preference; by default, the current folder, followed by
-            those in `START_VARIABLE`.
-        environment: the environment variables with ``AMENT_PREFIX_PATH``; by default, those of the process.
+            the folders in `START_VARIABLE`.
+        environment: the environment variables, with ``AMENT_PREFIX_PATH``; by default, those of the process.
         extra: package name -> share folder, searched first.
         sources_first: whether sources take precedence over the files that an earlier build installed from them.
     """
@@ -95,7 +97,10 @@ class PackageFinder:
         self._offered: str | None = None
 
     def starting_at(self, start: Sequence[Path]) -> PackageFinder:
-        """Return a finder that starts in other folders and shares this finder's searches of source trees."""
+        """Return a finder that starts in other folders.
+
+        Both finders share the results of searches through source trees.
+        """
         finder = PackageFinder(
             start=start, environment=self._environment, extra=self._extra, sources_first=self._sources_first
         )
@@ -108,7 +113,10 @@ class PackageFinder:
         return self._starts
 
     def find(self, name: str) -> Path | None:
-        """Return the share folder of a package, or None; for uninstalled packages, see `share_of_sources`."""
+        """Return the share folder of a package, or None if there is no such package.
+
+        For packages that are not installed, see `share_of_sources`.
+        """
         share = self._known.get(name)
         if share is None:
             share = next((place for place in self._places(name) if place is not None), None)
@@ -117,15 +125,17 @@ class PackageFinder:
         return share
 
     def find_in_sources(self, name: str) -> Path | None:
-        """Return the share folder for the sources of a package, ignoring files of an earlier build."""
+        """Return the share folder of a package in the source trees, or None; earlier builds are ignored."""
         found = (_share_of(name, self._scan(root).find(name)) for root in self._source_roots())
         return next(filter(None, found), None)
 
     def share(self, name: str) -> Path:
-        """Return the share folder of a package; for uninstalled packages, see `share_of_sources`.
+        """Return the share folder of a package.
+
+        For packages that are not installed, see `share_of_sources`.
 
         Raises:
-            PackageNotFoundError: PKG101, with the places that were searched and the nearest names.
+            PackageNotFoundError: PKG101, with the locations that were searched and the nearest names.
         """
         share = self.find(name)
         if share is None:
@@ -138,7 +148,7 @@ class PackageFinder:
     def packages(self) -> dict[str, Path]:
         """Return all packages, as a mapping from name to share folder or source folder.
 
-        If several packages have the same name, the mapping contains the one that `find` returns.
+        If several packages have the same name, the first in the order of the search is included.
         """
         found = dict(self._extra)
         for name, share in self._all():
@@ -146,22 +156,24 @@ class PackageFinder:
         return found
 
     def resolve(self, address: str, relative_to: Path | None = None) -> Path:
-        """Return the path for a URI or path in a description or launch file; it need not exist.
+        """Return the path for a URI or path in a description or launch file.
+
+        The path need not exist.
 
         Args:
             address: ``package://NAME/PATH``, ``file:///PATH`` or a plain path.
             relative_to: the folder that a relative path starts from; by default, the current folder.
 
         Raises:
-            LinkwrightError: PKG101 for an unknown package, PKG102 for a URI of another form.
+            LinkwrightError: PKG101, there is no such package; PKG102, the URI has another form.
         """
         return uri.resolve(address, self.share, relative_to)
 
     def offer_prefix_path(self, environment: MutableMapping[str, str]) -> None:
-        """Set ``AMENT_PREFIX_PATH`` for programs that read it, unless a workspace is sourced.
+        """Set ``AMENT_PREFIX_PATH`` for programs that read this variable, unless it is set already.
 
-        It contains the prefixes that sourcing the workspaces would set or, before a build, the folder to which a build
-        would install. This finder ignores the variable until a program changes it.
+        The value contains the prefixes that sourcing the workspaces would set or, before a build, the folder to which a
+        build would install. This finder ignores the variable until a program changes it.
         """
         if environment.get(ament.PREFIX_PATH):
             return
@@ -175,10 +187,7 @@ class PackageFinder:
         return ament.environment_prefixes(self._environment)
 
     def forget(self) -> None:
-        """Drop all cached results, so that the next search reads the disk again.
-
-        Packages may have appeared, disappeared or moved.
-        """
+        """Clear all cached results, so that the next search reads the disk again."""
         self._known.clear()
         self._meant.clear()
         self._scans.clear()
@@ -269,7 +278,7 @@ class PackageFinder:
     # --- the text of the error -------------------------------------------------------------------------------
 
     def _nearest(self, name: str) -> tuple[Phrase | None, bool]:
-        """Return a hint on a package with a similar name, and whether this name is a misspelling of that name."""
+        """Return a hint on a package with a similar name, or None, and whether the name is a misspelling."""
         ours = self._shipped()
         known = [package for package in self.packages() if package not in ours or is_misspelt(name, [package])]
         return did_you_mean(name, known), is_misspelt(name, known)
@@ -303,7 +312,10 @@ class PackageFinder:
 
 
 def shipped_folder() -> Path | None:
-    """Return the folder of the shipped packages, in the wheel or in the repository of an editable install."""
+    """Return the folder of the shipped packages, or None if there is none.
+
+    The folder is in the wheel, or in the repository of an editable install.
+    """
     package = Path(__file__).parents[1]
     for folder in (package / "robots", package.parents[1] / "robots"):
         if folder.is_dir():
@@ -316,5 +328,8 @@ def _share_of(name: str, folder: Path | None) -> Path | None:
 
 
 def _absolute(path: str | Path) -> Path:
-    """Return an absolute path with unresolved links, which are common in share folders."""
+    """Return an absolute path without resolving links.
+
+    Share folders often contain links.
+    """
     return Path(os.path.abspath(path))  # noqa: PTH100 - Path.resolve would follow the links

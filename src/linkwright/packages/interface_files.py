@@ -10,12 +10,14 @@ _ENDINGS = {"msg": (".msg", ".idl"), "srv": (".srv", ".idl"), "action": (".actio
 def interface_files(share: Path, kind: str) -> dict[str, Path]:
     """Return the files of the interfaces of one kind that a package defines.
 
+    An IDL file with the name of another interface file, which a build has generated, is left out.
+
     Args:
         share: the package's share folder, or its source folder.
         kind: ``msg``, ``srv`` or ``action``.
 
     Returns:
-        Name -> file. An installed package also contains a generated IDL file for each interface, which is left out.
+        Name of the interface -> file.
     """
     found: dict[str, Path] = {}
     for ending in _ENDINGS[kind]:
@@ -25,7 +27,7 @@ def interface_files(share: Path, kind: str) -> dict[str, Path]:
 
 
 def interface_file(share: Path, kind: str, name: str) -> Path | None:
-    """Return the file that defines one interface of a package, or None."""
+    """Return the file that defines an interface of a package, or None if there is no such interface."""
     for ending in _ENDINGS[kind]:
         path = share / kind / (name + ending)
         if path.is_file():

@@ -13,15 +13,15 @@ _BUILT = ("build", "install", "log")
 
 
 def is_launch_file_name(name: str) -> bool:
-    """Return whether a file is named like a launch file (``ros2launch.api.is_launch_file``)."""
+    """Return whether a file name is that of a launch file (``ros2launch.api.is_launch_file``)."""
     return name.endswith(_ENDINGS)
 
 
 def launch_files_below(folder: Path) -> list[Path]:
     """Return the launch files in a folder and a few levels below it, sorted by name in each folder.
 
-    Hidden folders and the build folders of colcon are left out. If the share folder of a package contains a file twice,
-    at its path in the sources and at its installed path (see `share_layout`), it is returned once.
+    Hidden folders and the build folders of colcon are left out. A share folder may contain a file twice, at its path in
+    the sources and at its installed path (see `share_layout`). Such a file is returned once.
     """
     found: dict[str, Path] = {}
     for path in _below(folder, _DEPTH):

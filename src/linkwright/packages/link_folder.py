@@ -20,17 +20,18 @@ _KEPT_SECONDS = 7 * 24 * 3600.0
 
 
 def link_folder(name: str, folder: Path, moved: Mapping[str, InstalledFile]) -> Path:
-    """Return a folder with links to a package's sources and to its installed files at installed paths.
+    """Return a folder with links to a package's sources, and to the installed files at their installed paths.
 
-    Each different content has its own folder, which other processes use, too.
+    Files that the build generates are written instead of linked. The folder is created if no process has created it for
+    the same content before.
 
     Args:
         name: the name of the package, which is also the folder's name.
         folder: the source folder of the package.
-        moved: the files whose installed paths differ from those in the sources, by their paths in the share folder.
+        moved: path in the share folder -> file, for files whose installed path differs from the path in the sources.
 
     Raises:
-        OSError: if the folder cannot be created.
+        OSError: the folder cannot be created.
     """
     links: dict[str, str | Path] = {}
     tops = {path.partition("/")[0] for path in moved}
@@ -63,7 +64,7 @@ def link_folder(name: str, folder: Path, moved: Mapping[str, InstalledFile]) -> 
                 target.write_text(link, encoding="utf-8")
             else:
                 target.symlink_to(link)
-        with suppress(OSError):  # another process has created it already
+        with suppress(OSError):  # another process has created the folder
             new_folder.rename(share.parent)
     finally:
         shutil.rmtree(new_folder, ignore_errors=True)

@@ -1,4 +1,4 @@
-"""``package.xml``, the file that makes a folder a ROS package (REP 149), and its search as in colcon."""
+"""``package.xml``, the file that makes a folder a ROS package (REP 149), and the search for it as in colcon."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ _NAME = lazy_pattern(r"<package\b[^>]*>.*?<name>\s*([^<\s]+)\s*</name>", re.DOTA
 
 
 def package_name(folder: Path) -> str | None:
-    """Return the name in a folder's ``package.xml``; None if the file or a name in it is missing.
+    """Return the name in a folder's ``package.xml``, or None if the file or its name is missing.
 
-    The text is searched, not parsed: a broken manifest must not stop the search through a whole workspace, and a search
-    reads many manifests.
+    The name is found by a search through the text, without an XML parser: a search for packages reads many manifests,
+    and a broken one must not stop it.
     """
     try:
         text = (folder / MANIFEST).read_text(encoding="utf-8", errors="replace")
@@ -31,9 +31,9 @@ def package_name(folder: Path) -> str | None:
 
 
 def enclosing_package(path: Path) -> tuple[str, Path] | None:
-    """Return the name and folder of the package that contains a file or folder.
+    """Return the name and folder of the package that contains a file or folder, or None.
 
-    It has the nearest ``package.xml`` upwards.
+    The package is the nearest folder above with a ``package.xml``.
     """
     for folder in (path, *path.parents):
         name = package_name(folder)
@@ -50,12 +50,12 @@ MAXIMUM_FOLDERS = 3000
 
 
 class SourceScan:
-    """A breadth-first search for packages below one folder that proceeds only on demand.
+    """A breadth-first search for packages below one folder, which proceeds only on demand.
 
     Folders nearer to the root come first, and siblings are sorted by name. A folder with a ``package.xml`` is a package
-    and is not searched further; hidden folders, build products and folders with an ignore marker are left out. The
-    search ends `MAXIMUM_DEPTH` folders down or after `MAXIMUM_FOLDERS` folders, so that a search that starts in a home
-    folder does not read the whole disk.
+    and is not searched further. Hidden folders, build products and folders with an ignore marker are left out. The
+    search ends `MAXIMUM_DEPTH` levels below the root or after `MAXIMUM_FOLDERS` folders, so that a search that starts
+    in a home folder does not read the whole disk.
 
     Attributes:
         root: the folder where the search starts.
@@ -71,7 +71,10 @@ class SourceScan:
         self._steps: Iterator[tuple[str, Path]] | None = self._walk()
 
     def find(self, name: str) -> Path | None:
-        """Return the folder of a package, or None; the search stops as soon as the package is found."""
+        """Return the folder of a package, or None if it is not found.
+
+        The search stops as soon as the package is found.
+        """
         if name in self._found:
             return self._found[name]
         while self._advance():
@@ -80,7 +83,10 @@ class SourceScan:
         return None
 
     def packages(self) -> dict[str, Path]:
-        """Return all packages below the root, by name; of two with the same name, the first one found."""
+        """Return the folders of all packages below the root, by name.
+
+        If several packages have the same name, the first one found is included.
+        """
         while self._advance():
             pass
         return dict(self._found)
@@ -122,7 +128,7 @@ class SourceScan:
 
 
 def _listing(folder: str) -> tuple[set[str], list[str]]:
-    """Return the names of the files in a folder, and the sorted names of the subfolders worth searching."""
+    """Return the names of the files in a folder, and the sorted names of the subfolders to search."""
     files: set[str] = set()
     folders: list[str] = []
     try:
@@ -141,7 +147,7 @@ def _listing(folder: str) -> tuple[set[str], list[str]]:
 
 
 def _links_upwards(entry: os.DirEntry[str]) -> bool:
-    """Return whether a folder is a link to one of its parents, so that following it would never end."""
+    """Return whether a folder is a link to a folder that contains it, which would cause an endless search."""
     if not entry.is_symlink():
         return False
     link = Path(entry.path)

@@ -1,7 +1,7 @@
-"""Rules for names and e-mail addresses in a package: limits of build tools, and advice of REP 144.
+"""Checks of names and e-mail addresses in a package: the limits of build tools and the rules of REP 144.
 
-Errors are names that would break a build later (a folder that Python cannot import, a project that CMake refuses,
-an e-mail address for which colcon drops the package's environment hooks). Deviations from REP 144 are warnings.
+Names that would break a build later are errors: a folder that Python cannot import, a project that CMake refuses, an
+e-mail address for which colcon drops the package's environment hooks. Deviations from REP 144 are warnings.
 """
 
 from __future__ import annotations
@@ -13,15 +13,15 @@ from linkwright.diagnostics import Diagnostic, Phrase, Severity, phrase, quoted,
 from linkwright.loading.deferred import lazy_pattern
 
 _IDENTIFIER = lazy_pattern(r"[A-Za-z][A-Za-z0-9_]*")
-# A name that catkin_pkg accepts, including names of old packages.
+# The names that catkin_pkg accepts, including those of old packages.
 _ACCEPTED = lazy_pattern(r"[A-Za-z0-9][A-Za-z0-9_-]*")
 _DEPENDENCY = lazy_pattern(r"[A-Za-z0-9][A-Za-z0-9_.+-]*")
-# An address that catkin_pkg, which colcon uses, accepts: ASCII, with a top-level domain of two or more letters.
+# The addresses that catkin_pkg, and thus colcon, accepts: ASCII, with a top-level domain of two or more letters.
 _EMAIL = lazy_pattern(r"[\w%+-]+(\.[\w%+-]+)*@[\w%-]+(\.[\w%-]+)*\.[A-Za-z]{2,}", re.ASCII)
 
 
 def check_package_name(name: str) -> list[Diagnostic]:
-    """Return the findings on the name of a package: errors (PKG201), or else advice (PKG202)."""
+    """Return the findings on the name of a package: errors (PKG201), or else warnings (PKG202)."""
     if not _IDENTIFIER.fullmatch(name):
         message = phrase("'{name}' cannot be the name of a package: {problem}", name=name, problem=_broken_rule(name))
         return [Diagnostic("PKG201", message, hint=_suggestion(name))]
@@ -32,14 +32,19 @@ def check_package_name(name: str) -> list[Diagnostic]:
 
 
 def departure_from_rep(name: str) -> Diagnostic:
-    """Return the advice (PKG202) on a name that does not follow REP 144, naming the violated rule."""
+    """Return the warning (PKG202) that names the rule of REP 144 that a name violates."""
     advice = _departure(name) or _broken_rule(name)
     message = phrase("package name '{name}' does not follow REP 144: {advice}", name=name, advice=advice)
     return Diagnostic("PKG202", message, severity=Severity.WARNING, hint=_suggestion(name))
 
 
 def check_member_name(name: str, what: str) -> list[Diagnostic]:
-    """Return the findings on the name of a node or library (PKG203); `what` is "node" or "library"."""
+    """Return the findings on the name of a node or library (PKG203).
+
+    Args:
+        name: the name.
+        what: ``node`` or ``library``.
+    """
     if _IDENTIFIER.fullmatch(name) and not keyword.iskeyword(name):
         return []
     problem = phrase("it is a Python keyword") if keyword.iskeyword(name) else _broken_rule(name)
@@ -53,7 +58,7 @@ def check_member_name(name: str, what: str) -> list[Diagnostic]:
 
 
 def check_dependency(name: str) -> list[Diagnostic]:
-    """Return the findings on the name of a package or system key in a dependency (PKG204)."""
+    """Return the findings on the name of a dependency, which is a package or a system key (PKG204)."""
     if _DEPENDENCY.fullmatch(name):
         return []
     message = phrase("'{name}' cannot be the name of a dependency", name=name)
@@ -69,7 +74,7 @@ def check_email(address: str) -> list[Diagnostic]:
 
 
 def is_accepted_name(name: str) -> bool:
-    """Return whether colcon builds a package with this name, even against the advice of REP 144."""
+    """Return whether colcon builds a package with this name, even if REP 144 advises against the name."""
     return _ACCEPTED.fullmatch(name) is not None
 
 

@@ -1,18 +1,17 @@
-"""The share folder of an unbuilt package, with the layout of its build, and our substitutes.
+"""The share folder of an unbuilt package, with the layout of a build, and the substitutes for ROS packages.
 
-In most packages, the installed files have the same paths in the sources, so their source folder serves as the share
+In most packages, the installed files have the same paths as the sources, so the source folder serves as the share
 folder. Some packages differ: ``install(DIRECTORY description/urdf DESTINATION share/${PROJECT_NAME})``, or
-``glob('cfg/*')`` to ``config``. For these, a folder of links is created in the user's cache, with the installed
-files at their installed paths and everything else from the sources. A user of the share folder, including a launch
-file with ``os.path.join``, then finds the files that would exist after a build. Files that require compilation are
-replaced by ours if they exist.
+``glob('cfg/*')`` to ``config``. For these packages, a folder of links is created in the user's cache, with the
+installed files at their installed paths and all other files from the sources. A program that uses the share folder,
+such as a launch file with ``os.path.join``, then finds the files that would exist after a build. Files that require
+compilation are replaced by Linkwright's, if there are any.
 
-Our substitutes replace ROS packages that launch files include, such as those of Gazebo and nav2.
-
-They contain the launch files of those packages and the files that these need, and start our nodes. They are found
-through the entry points ``linkwright.package_substitutes``: each is named after a package and points to a module
-whose folder is a prefix with that package, ``share/NAME``. A package that is replaced only by modules, messages or
-nodes, such as rclpy, std_msgs and robot_state_publisher, has a share folder that does not exist.
+Linkwright's substitutes replace ROS packages that launch files include, such as those of Gazebo and nav2. They contain
+the launch files of those packages and the files that these need, and start Linkwright's nodes. The substitutes are
+registered as entry points in the group ``linkwright.package_substitutes``. Each entry point has the name of a package
+and refers to a module whose folder is a prefix that contains ``share/NAME``. A package that is replaced only by
+modules, messages or nodes, such as rclpy, std_msgs and robot_state_publisher, has a share folder that does not exist.
 """
 
 from __future__ import annotations
@@ -36,7 +35,7 @@ _IN_PART = Path(__file__).parent / "substitutes"
 
 
 def substituted_share(name: str) -> Path | None:
-    """Return the share folder of our substitute for a ROS package; None if there is none."""
+    """Return the share folder of the substitute for a ROS package, or None if there is no substitute."""
     share = _share_with_files(name)
     if share is None and name in _partly_replaced_packages():
         return _IN_PART / "share" / name
@@ -44,7 +43,7 @@ def substituted_share(name: str) -> Path | None:
 
 
 def substitutes() -> Iterator[tuple[str, Path]]:
-    """Yield the name and share folder of every substitute that has files, by name."""
+    """Yield the name and share folder of every substitute that has files, sorted by name."""
     for name in sorted(extensions(_GROUP)):
         share = _share_with_files(name)
         if share is not None:
@@ -65,9 +64,9 @@ def _share_with_files(name: str) -> Path | None:
 
 @cache
 def substituted_executables() -> dict[str, frozenset[str]]:
-    """Return the partly replaced packages, each with the executables that we replace.
+    """Return the partly replaced packages, each with the names of the replaced executables.
 
-    The replacements are modules, messages or nodes.
+    Modules, messages or nodes of Linkwright replace these packages.
     """
     lines = Path(__file__).with_name("substituted_names.txt").read_text(encoding="utf-8").splitlines()
     return {package: frozenset(executables) for package, *executables in map(str.split, lines)}
@@ -75,31 +74,32 @@ def substituted_executables() -> dict[str, frozenset[str]]:
 
 @cache
 def _partly_replaced_packages() -> frozenset[str]:
-    """Return the packages that are partly replaced by us or by nodes of other installed packages."""
+    """Return the packages that nodes or modules of Linkwright or of its extensions replace in part."""
     nodes = (name for group in ("linkwright.nodes", "linkwright.components") for name in extensions(group))
     return frozenset({*substituted_executables(), *(name.partition("/")[0] for name in nodes)})
 
 
 def is_substitute(share: Path) -> bool:
-    """Return whether a share folder is our substitute for a missing ROS package, such as gazebo_ros.
+    """Return whether a share folder is that of a substitute for a ROS package, such as gazebo_ros.
 
-    It contains the launch files that others include, but not the rest of that package.
+    A substitute contains the launch files that others include, but not the rest of the package.
     """
     return install_prefix(share) == _IN_PART or share == _share_with_files(share.name)
 
 
 def substituted_files(name: str, folder: Path) -> dict[str, InstalledFile]:
-    """Return our files that unbuilt sources of a package lack, by path in the share folder.
+    """Return the files of a substitute that the unbuilt sources of the package lack.
 
-    A launch file that a build generates, such as ros_gz_sim's ``gz_sim.launch.py``, names programs of that build, while
-    ours starts our nodes. Files in the sources take precedence: the names of their nodes lead to ours, and the user may
-    have edited them.
+    The result maps paths in the share folder to files. A launch file that a build generates, such as ros_gz_sim's
+    ``gz_sim.launch.py``, starts programs of that build, while the substitute's file starts Linkwright's nodes. Files in
+    the
+    sources take precedence: Linkwright's nodes have the same names, and the user may have edited the files.
 
     Args:
         name: the package.
         folder: the source folder of the package.
     """
-    text = _text_with_targets(folder)  # checked before the entry points, which take longer to read
+    text = _text_with_targets(folder)  # checked first, because entry points take longer to read
     share = None if text is None else _share_with_files(name)
     if text is None or share is None or not _compiles(folder, text):
         return {}
@@ -116,7 +116,7 @@ _COMPILING = ("add_executable", "add_library", "add_module", "add_subdirectory",
 
 
 def _text_with_targets(folder: Path) -> str | None:
-    """Return the text of a package's CMakeLists.txt if it may declare compiled targets."""
+    """Return the text of a package's ``CMakeLists.txt``, or None if it cannot declare compiled targets."""
     try:
         text = (folder / "CMakeLists.txt").read_text(encoding="utf-8", errors="replace")
     except OSError:
@@ -126,7 +126,7 @@ def _text_with_targets(folder: Path) -> str | None:
 
 
 def _compiles(folder: Path, text: str) -> bool:
-    """Return whether a package with this CMakeLists.txt must be compiled."""
+    """Return whether a package with this text of its ``CMakeLists.txt`` must be compiled."""
     from linkwright.diagnostics import SourceText
     from linkwright.packages.readers.cmake import read_cmake
 
@@ -137,16 +137,16 @@ _MARK = os.path.join("", "linkwright", SHARES, "")  # noqa: PTH118 - a part of t
 
 
 def share_of_sources(name: str, folder: Path) -> Path:
-    """Return the share folder of an unbuilt package: its source folder, or a folder of links to it.
+    """Return the share folder of an unbuilt package: its source folder, or a folder of links to the sources.
 
-    If the links cannot be created (a full disk, Windows without the permission to create links), it is also the source
-    folder.
+    The result is also the source folder if the links cannot be created, for example on a full disk, or on Windows
+    without the permission to create links.
 
     Args:
         name: the package.
         folder: the source folder of the package.
     """
-    if _MARK in str(folder):  # it is a folder of links already, of a launch file that was found here
+    if _MARK in str(folder):  # a launch file in a folder of links started the search
         return folder
     moved = {path: file for path, file in _shared(name, folder) if path != file.source}
     moved |= substituted_files(name, folder)
@@ -161,14 +161,14 @@ def share_of_sources(name: str, folder: Path) -> Path:
 
 
 def source_of(path: str) -> str:
-    """Return the package file that a file in a folder of links represents; any other path unchanged."""
+    """Return the source file behind a file in a folder of links, and any other path unchanged."""
     return os.path.realpath(path) if _MARK in path else path
 
 
 def _shared(name: str, folder: Path) -> Iterator[tuple[str, InstalledFile]]:
-    """Yield the files that a package installs into its share folder, by path.
+    """Yield the path in the share folder and the record of each file that a package installs there.
 
-    Some files with an unchanged path are left out.
+    Some files whose path is the same in the sources are left out.
     """
     share = f"share/{name}/"
     with suppress(OSError, ValueError):
@@ -178,9 +178,9 @@ def _shared(name: str, folder: Path) -> Iterator[tuple[str, InstalledFile]]:
 
 
 def _is_own(source: str) -> bool:
-    """Return whether a file is in the package.
+    """Return whether a source path is inside the package.
 
-    A page must not show files that an untrusted package takes from other places.
+    A page must not show files from outside an untrusted package.
     """
     path = Path(os.path.normpath(source))
     return not path.is_absolute() and path.parts[:1] != (os.pardir,)
@@ -203,6 +203,6 @@ def _installed(folder: Path, share: str) -> Iterator[InstalledFile]:
         from linkwright.packages.readers.cmake import read_cmake
 
         cmake = read_cmake(source, folder)
-        hooks = set(cmake.hooks)  # hooks are read when a build is sourced
+        hooks = set(cmake.hooks)  # only sourcing a build reads the hooks
         yield from (file for file in cmake.moved(folder, share) if file.destination not in hooks)
         return

@@ -14,10 +14,15 @@ _SCHEME = lazy_pattern(r"([A-Za-z][A-Za-z0-9+.-]+):")
 
 
 def resolve(address: str, share: Callable[[str], Path], relative_to: Path | None) -> Path:
-    """Return the path for a URI or path, calling `share` for a package's share folder.
+    """Return the path for a URI or a plain path.
+
+    Args:
+        address: ``package://NAME/PATH``, ``file:///PATH`` or a plain path.
+        share: the function that returns the share folder of a package.
+        relative_to: the folder that a relative path starts from; None for the current folder.
 
     Raises:
-        LinkwrightError: an error of `share`, or PKG102 for a URI that has none of the three forms.
+        LinkwrightError: an error of `share`; PKG102, the URI has another form.
     """
     if not address.strip():
         raise _bad_uri(phrase("'{uri}' is empty, but the path of a file is expected", uri=address))
@@ -64,7 +69,7 @@ def _file_path(address: str, rest: str) -> Path:
 
 
 def absolute_path(rest: str, *, with_drives: bool = os.name == "nt") -> str | None:
-    """Return the path in a ``file:`` URI; None if it is not absolute.
+    """Return the path in a ``file:`` URI, or None if the path is not absolute.
 
     Args:
         rest: the URI without ``file:``.

@@ -1,1 +1,1 @@
-"""The page in the browser as its server sees it: protocol, admission, open pages, and the queue of data for each."""
+"""The page in the browser as its server sees it: protocol, admission, open pages, and outboxes."""

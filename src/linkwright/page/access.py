@@ -9,10 +9,10 @@ the server. Connections that have not sent the token are limited in number and t
 A page whose program has ended tries to reconnect at the same port, where another user's program may be listening by
 then. The page sends the token only to a server that proves that it knows the token (`Gate.proof`).
 
-The token of a port is stored for the next start, which lets open pages reconnect when the program is started again.
+The token of a port is stored for the next start, so that open pages can reconnect when the program is started again.
 There is a file for each port, which only its user can read. A token is valid for a week after its creation, which
-limits the damage of a leaked token. Servers that other machines can reach do not store their tokens, because these are
-sent over the network in plain text.
+limits the damage of a leaked token. Servers that other machines can reach do not store their tokens, because such
+tokens are sent over the network in plain text.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ def new_token() -> str:
 
 @dataclass(frozen=True)
 class PortToken:
-    """The token of a port.
+    """The token of a port, as stored for the next program at that port.
 
     Attributes:
         token: the token that pages send.
@@ -63,12 +63,15 @@ class PortToken:
 
 
 def token_folder() -> Path:
-    """Return the folder of the files, below the user's state."""
+    """Return the folder of the token files, below the user's state folder."""
     return state_folder() / "page-tokens"
 
 
 def keep_token(port: int) -> PortToken:
-    """Return the token of the user's last program on a port, or a new token, and store it."""
+    """Return the stored token of a port, or a new token if there is no valid one, and store it.
+
+    The returned `pages_wait` is that of the former program; it is reset in the file.
+    """
     now = time.time()
     made, stored = _read(token_folder() / str(port))
     if stored is None or not 0.0 <= now - made < _LIFETIME:
@@ -78,9 +81,9 @@ def keep_token(port: int) -> PortToken:
 
 
 def leave_token(port: int, token: str, *, pages_wait: bool) -> None:
-    """Store whether the pages of an ending program wait for the next one.
+    """Store whether the pages of an ending program wait for the next program at the port.
 
-    Nothing is stored if the file has another token.
+    Nothing is stored if the file contains another token.
     """
     made, stored = _read(token_folder() / str(port))
     if stored is not None and stored.token == token:
@@ -88,9 +91,9 @@ def leave_token(port: int, token: str, *, pages_wait: bool) -> None:
 
 
 def _read(path: Path) -> tuple[float, PortToken | None]:
-    """Return a token's creation time and the token; the token is None unless its file is private.
+    """Return a token's creation time in seconds since the epoch, and the token.
 
-    The time is in seconds since the epoch.
+    The token is None if the file cannot be read, is not private, or has no valid content.
     """
     with suppress(OSError, ValueError, TypeError, KeyError, RecursionError):
         descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0))
@@ -104,7 +107,10 @@ def _read(path: Path) -> tuple[float, PortToken | None]:
 
 
 def _is_private(facts: os.stat_result) -> bool:
-    """Return whether only this user can have read or written a file; Windows protects the user's folders itself."""
+    """Return whether only this user can read and write a regular file.
+
+    On Windows, which protects the user's folders itself, only the kind of file is checked.
+    """
     if not stat.S_ISREG(facts.st_mode):
         return False
     user = getattr(os, "getuid", None)
@@ -112,7 +118,7 @@ def _is_private(facts: os.stat_result) -> bool:
 
 
 def _write(port: int, made: float, port_token: PortToken) -> None:
-    """Store a token; failure is not an error, but the next program then has another token."""
+    """Store a token; failures are ignored, and the next program then has another token."""
     folder = token_folder()
     with suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True, mode=0o700)
@@ -130,7 +136,7 @@ class Gate:
     """Checks whether requests may access the server.
 
     Args:
-        host: the name that the server is bound to, which is also allowed.
+        host: the name that the server is bound to, which is also accepted as a host name.
         token: the token that opens the page.
     """
 
@@ -140,7 +146,7 @@ class Gate:
         self._names = {"localhost", host.lower(), machine, f"{machine}.local"}
 
     def refusal(self, headers: Mapping[str, str]) -> str | None:
-        """Return the reason to refuse a request, whatever it asks for (403); None if it is accepted."""
+        """Return the reason why a request is refused because of its Host or Origin header (403), or None."""
         host = headers.get("Host", "")
         if not self.knows(host):
             return f"this server does not answer to the name '{host[:200]}': open the address that linkwright printed"
@@ -155,11 +161,9 @@ class Gate:
         return given is not None and hmac.compare_digest(given.encode(errors="replace"), self.token.encode())
 
     def proof(self, nonce: str) -> str | None:
-        """Return the HMAC-SHA256 of a page's nonce, which requires the token to compute.
+        """Return the HMAC-SHA256 of a page's nonce under the token, or None if the nonce is not valid.
 
-        The nonce has 32 hexadecimal digits.
-
-        Return None for an invalid nonce. The result reveals nothing about the token.
+        A nonce has 32 hexadecimal digits. The result proves that the server knows the token, but does not reveal it.
         """
         return hmac.digest(self.token.encode(), nonce.encode(), "sha256").hex() if _NONCE.fullmatch(nonce) else None
 
@@ -175,7 +179,7 @@ class Gate:
             ipaddress.ip_address(name)
         except ValueError:
             return name.removesuffix(".") in self._names
-        return True  # an IP address is not resolved by DNS, so it cannot be rebound
+        return True  # DNS rebinding is impossible with an IP address
 
 
 def _same(origin: str, host: str) -> bool:
@@ -233,7 +237,7 @@ class Admission:
     not affected.
 
     Args:
-        make: returns the protocol of a connection.
+        make: returns a new protocol, which serves one connection.
     """
 
     def __init__(self, make: Callable[[], asyncio.Protocol]) -> None:
@@ -246,19 +250,19 @@ class Admission:
         return Entrance(self, self._make())
 
     def asked(self, served: object) -> None:
-        """Keep a connection that has sent a request until its place is needed, however slow it is."""
+        """Record that a connection has sent a request, so that it is closed only if its slot is needed."""
         entrance = self._strangers.get(served)  # type: ignore[call-overload]
         if entrance is not None:
             entrance.may_stay()
 
     def admit(self, served: object) -> None:
-        """Keep a connection that has sent the token."""
+        """Record that a connection has sent the token, so that no other connection replaces it."""
         entrance = self._strangers.pop(served, None)  # type: ignore[call-overload]
         if entrance is not None:
             entrance.may_stay()
 
     def opened(self, entrance: Entrance) -> bool:
-        """Return whether a new connection may stay for now."""
+        """Count a new connection, and return False if it must be refused."""
         if self._count >= MAXIMUM_CONNECTIONS:
             oldest = next(iter(self._strangers.values()), None)
             if oldest is None:
@@ -269,7 +273,7 @@ class Admission:
         return True
 
     def closed(self, entrance: Entrance) -> None:
-        """Release the place of a connection."""
+        """Release the slot of a connection."""
         self._count -= 1
         self._strangers.pop(entrance.served, None)
 
@@ -278,9 +282,9 @@ _PASSED_ON = ("data_received", "eof_received", "pause_writing", "resume_writing"
 
 
 class Entrance(asyncio.Protocol):
-    """Counts and limits a connection when it opens and closes.
+    """The outer protocol of a connection, which counts and limits the connection.
 
-    Its data goes directly to the inner protocol.
+    Received data goes directly to the inner protocol.
     """
 
     def __init__(self, admission: Admission, served: asyncio.Protocol) -> None:
@@ -289,7 +293,7 @@ class Entrance(asyncio.Protocol):
         self._transport: asyncio.BaseTransport | None = None
         self._counted = False
         self._deadline: asyncio.TimerHandle | None = None
-        for name in _PASSED_ON:  # copied directly, because these methods would only forward
+        for name in _PASSED_ON:  # saves a call for each event
             setattr(self, name, getattr(served, name))
 
     def may_stay(self) -> None:
@@ -310,7 +314,7 @@ class Entrance(asyncio.Protocol):
     # --- asyncio.Protocol --------------------------------------------------------------------------------------
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        """Serve the connection if it may stay."""
+        """Serve the connection, or abort it if it must be refused."""
         self._transport = transport
         self._counted = self._admission.opened(self)
         self.served.connection_made(transport)
@@ -320,7 +324,7 @@ class Entrance(asyncio.Protocol):
             self.end()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Release the connection's place."""
+        """Release the slot of the connection."""
         self.may_stay()
         if self._counted:
             self._counted = False

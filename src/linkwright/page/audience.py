@@ -41,7 +41,7 @@ _LOOKS = 20
 
 
 class Lateness:
-    """Measures how late the event loop runs, from its creation until it is closed.
+    """Measures the lag of the event loop, from its creation until it is closed.
 
     Messages from a page wait for that time before they are read, and messages to a page before they are sent.
     """
@@ -91,9 +91,9 @@ class Page:
 
     Args:
         socket: the page's socket.
-        own: the name of the page's own set of displays; empty for a page that uses the shared displays.
+        own: the name of the page's own configuration; empty for a page that uses the shared configuration.
         is_here: whether the page is open on this machine or connected through a tunnel to it.
-        language: the language of the page's user, one of `LANGUAGES`; None leaves texts as they are.
+        language: the language of the page's user, one of `LANGUAGES`; None to send texts untranslated.
     """
 
     def __init__(
@@ -122,7 +122,7 @@ class Page:
         self.outbox.put(redundancy_key(message), encode(message, self.language))
 
     async def write(self) -> None:
-        """Send the opening messages, then those of the outbox, until the socket closes."""
+        """Send the opening payloads, then those of the outbox, until the connection is lost."""
         try:
             for payload in self._opening:
                 made = self.outbox.make(payload)
@@ -132,10 +132,10 @@ class Page:
             while True:
                 await self._send(await self.outbox.take())
         except ConnectionError:
-            pass  # the reader also notices the end, and cleans up
+            pass  # the reader notices this too, and cleans up
 
     def received(self, count: int) -> None:
-        """Record the number of messages that the page has acknowledged."""
+        """Record that the page has acknowledged its first `count` messages."""
         self.line.received(count)
         self._line_changed()
 
@@ -164,7 +164,10 @@ class Page:
         self._line_changed()
 
     async def _fitted(self, payload: ScaledData) -> bytes:
-        """Return as much of the content as the connection can carry; the rest follows when it is idle."""
+        """Return a frame with as much of the content as the connection can carry.
+
+        The full content is sent later, when the connection is idle.
+        """
         room = self.line.room
         frame = await payload.fitting(room)
         if frame is payload.full_frame:
@@ -194,7 +197,7 @@ class Page:
             self._completing = asyncio.get_running_loop().call_later(_QUIET, self._complete)
 
     def _judge_lateness(self) -> None:
-        """Inform the page whether this program is the bottleneck, while the page receives reduced data."""
+        """Notify the page when this program starts or stops being the reason for reduced data."""
         if self._lateness is None and self._reduced:
             self._lateness = Lateness(asyncio.get_running_loop())
         elif self._lateness is not None and not self._reduced:
@@ -206,7 +209,7 @@ class Page:
             self.send(ProgramIsLate(late))
 
     def _complete(self) -> None:
-        """Send the full content, which rarely changes, in chunks suited to the connection's speed."""
+        """Send the full content of a reduced payload in chunks, because the connection is idle."""
         self._completing = None
         for payload, _ in self._reduced.values():
             if payload.key not in self.outbox:
@@ -241,11 +244,11 @@ class PageGroup:
         return page in self._pages
 
     def add(self, page: Page) -> None:
-        """Add a page, which receives messages from now on."""
+        """Add a page to the group."""
         self._pages[page] = None
 
     def discard(self, page: Page) -> None:
-        """Remove a page."""
+        """Remove a page from the group, if it is a member."""
         self._pages.pop(page, None)
 
     def publish(self, message: ServerMessage) -> None:
@@ -271,8 +274,8 @@ class Audience(PageGroup):
     """All open pages.
 
     Args:
-        opening: returns the initial messages for a page, which are the full current state.
-        receivers: the receivers of messages from pages by the address of the message's class; other messages are
+        opening: returns the payloads for a new page, which contain the full current state.
+        receivers: the receivers of messages from pages, by the address of the message's class; other messages are
             ignored.
         gone: called when a page has closed.
         logger: logs invalid messages, and failures to handle a message.
@@ -295,12 +298,12 @@ class Audience(PageGroup):
 
     @property
     def is_full(self) -> bool:
-        """Whether no more pages can be accepted."""
+        """Whether the maximum number of pages is open or being opened."""
         return len(self) + self._expected >= MAXIMUM_PAGES
 
     @contextmanager
     def expecting(self) -> Iterator[None]:
-        """Reserve a place for a page whose socket is being opened; `attend` uses it."""
+        """Reserve a slot for a page while its socket is being opened; `attend` takes the slot over."""
         self._expected += 1
         try:
             yield
@@ -308,7 +311,7 @@ class Audience(PageGroup):
             self._expected -= 1
 
     async def attend(self, page: Page, socket: WebSocketResponse) -> None:
-        """Serve a page on its socket until it closes."""
+        """Serve a page on its socket until the socket closes."""
         page.open(self._opening(page))
         self.add(page)
         self._sockets.add(socket)
@@ -389,7 +392,7 @@ class Pace:
         self._at = clock()
 
     def wait(self) -> float:
-        """Return the number of seconds to wait before the next message is handled."""
+        """Return for how many seconds the next message must be delayed."""
         now = self._clock()
         self._left = min(_BURST, self._left + (now - self._at) * _RATE) - 1.0
         self._at = now

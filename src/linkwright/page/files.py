@@ -57,12 +57,12 @@ _LOOSE_DEPTH = 2
 
 @dataclass(frozen=True, slots=True)
 class ServedFolder:
-    """A folder that pages may read from: of a package, a Gazebo model, or a mesh outside of both.
+    """A folder that pages may read from: of a package, of a Gazebo model, or of a mesh outside of both.
 
     Attributes:
         root: the folder.
-        package: the name of the package, if it is a package's folder.
-        is_model: whether the folder belongs to a model and contains its meshes and textures.
+        package: the name of the package, or None if the folder is not a package's.
+        is_model: whether the folder is that of a Gazebo model, with its meshes and textures.
     """
 
     root: Path
@@ -71,10 +71,10 @@ class ServedFolder:
 
     @property
     def key(self) -> str:
-        """The key of the folder in addresses: readable, hard to guess, and without the parent path.
+        """The key of the folder in addresses, which is readable and secret and does not contain the path.
 
-        The image elements of textures cannot send a token, so the address itself, which only pages receive, must be
-        secret.
+        It must be secret because the image elements of textures cannot send the token: only a page that received the
+        address can fetch the file.
         """
         name = re.sub(r"[^A-Za-z0-9_.-]", "_", self.package or self.root.name)
         root = os.fsencode(self.root)
@@ -83,7 +83,7 @@ class ServedFolder:
 
 @dataclass(frozen=True, slots=True)
 class Located:
-    """The outcome of locating a file of a description: an address for the page, or the reason why there is none."""
+    """The address of a file for pages, or None and the reason why there is no address."""
 
     url: str | None
     problem: Phrase | None = None
@@ -110,16 +110,16 @@ class MeshIndex:
     _unknown: dict[str, Located] = field(default_factory=dict)
 
     def locate(self, uri: str, base: Path | None, types: dict[str, str]) -> Located:
-        """Return the address of a file.
+        """Return the address of a file, and add its folder to `folders`.
 
         Args:
             uri: the URI in the description: ``package://``, ``file://`` or a path.
             base: the folder that relative paths refer to, which contains the file with the URI.
-            types: the supported extensions.
+            types: the supported suffixes, in lower case.
         """
         package = _PACKAGE_URI.match(uri)
         if package and package[1] in self._unknown:
-            return self._unknown[package[1]]  # robots refer to a missing package many times, and each search is slow
+            return self._unknown[package[1]]  # searches are slow, and a robot names its package often
         try:
             path = Path(os.path.normpath(self.finder.resolve(uri, base)))
         except PackageNotFoundError as error:
@@ -160,7 +160,7 @@ class MeshIndex:
 
 
 def without_secrets(text: str) -> str:
-    """Return text, for others, with file addresses that give no access to the server."""
+    """Return a text in which file addresses have no secret part, so that the text can be shared."""
     return _SECRET_OF_KEY.sub(r"\1", text)
 
 
@@ -199,7 +199,7 @@ class MeshFolders:
 def resolve(folder: ServedFolder, relative: str) -> Path:
     """Return the real path of a file below a folder, with links followed and checked.
 
-    A link may lead out of a package's folder only into another folder of the same package, because
+    A link may lead out of a package's folder only to a file of the same package, because
     ``colcon build --symlink-install`` arranges share folders that way.
 
     Raises:
@@ -227,7 +227,10 @@ def resolve(folder: ServedFolder, relative: str) -> Path:
 
 
 def _beside(path: Path) -> Path:
-    """Return a file, or the image with its name in the folder where Gazebo models store images."""
+    """Return the path, or that of the image with the same name in a Gazebo model's texture folder.
+
+    The latter is used only if there is no file at the path.
+    """
     if path.suffix.lower() in IMAGE_TYPES and not path.exists():
         model = path.parent.parent
         texture = model / "materials" / "textures" / path.name
@@ -256,7 +259,7 @@ class Download:
 
 
 class Downloads:
-    """Files that can be fetched under secret keys, which only the requesting page knows."""
+    """Files that can be fetched under secret keys, which only the page that requested them receives."""
 
     def __init__(self) -> None:
         self._files: dict[str, Download] = {}
@@ -269,7 +272,7 @@ class Downloads:
         return f"/export/{key}/{quote(path.name)}"
 
     def path(self, key: str) -> Path | None:
-        """Return the file with a key assigned by `keep`, or None."""
+        """Return the path of a file that `keep` offers under a key, or None."""
         return self._reusable.get(key)
 
     def put(self, file: Download) -> str:
@@ -281,7 +284,7 @@ class Downloads:
         return f"/export/{key}/{quote(file.name)}"
 
     def take(self, key: str) -> Download | None:
-        """Return the file with a key and remove it, or None."""
+        """Return the file that `put` offers under a key, and withdraw it; None if there is none."""
         now = time.monotonic()
         for old in [old for old, file in self._files.items() if now - file.made > _KEPT_SECONDS]:
             del self._files[old]

@@ -16,20 +16,20 @@ from typing import Any
 
 
 def _enter_package() -> None:
-    """Add an empty aiohttp package to the loaded modules, whose ``__init__`` runs on demand."""
+    """Register an empty aiohttp package, whose ``__init__`` is run on demand."""
     spec = find_spec("aiohttp")
     if spec is None or spec.loader is None or spec.origin is None:
-        return  # the import below raises the error
+        return  # the import of aiohttp below raises the error
     package, loader, lock = module_from_spec(spec), spec.loader, RLock()
     installed = [path.stem for path in Path(spec.origin).parents[1].glob("aiohttp-*.dist-info")]
 
     def missing(name: str) -> Any:
         if name == "__version__" and len(installed) == 1:
-            return installed[0].partition("-")[2]  # the server's name in its responses
+            return installed[0].partition("-")[2]  # the version, which is part of the server's name in responses
         with lock:
             if package.__dict__.get("__getattr__") is missing:
                 if find_spec(f"aiohttp.{name}"):
-                    raise AttributeError(name)  # makes `import` load that module
+                    raise AttributeError(name)  # the import system then loads that module
                 del package.__dict__["__getattr__"]
                 loader.exec_module(package)
         return getattr(package, name)
@@ -39,7 +39,7 @@ def _enter_package() -> None:
 
 
 def _leave_package() -> None:
-    """Remove all of aiohttp from the loaded modules, so that it is loaded from scratch."""
+    """Unregister all modules of aiohttp, so that they are imported again."""
     for name in [module for module in sys.modules if module == "aiohttp" or module.startswith("aiohttp.")]:
         del sys.modules[name]
 
@@ -50,7 +50,7 @@ if "aiohttp" not in sys.modules:
 try:
     from aiohttp import web
     from aiohttp.http_exceptions import HttpProcessingError
-except (AttributeError, ImportError):  # a later aiohttp whose server needs `__init__`
+except (AttributeError, ImportError):  # a later version, whose server needs `__init__`
     _leave_package()
     from aiohttp import web
     from aiohttp.http_exceptions import HttpProcessingError
@@ -59,10 +59,7 @@ __all__ = ["SERVER_LOGGER", "HttpProcessingError", "web"]
 
 
 def _is_the_servers_fault(record: logging.LogRecord) -> bool:
-    """Return whether to log a record; client errors are not logged.
-
-    Examples are malformed requests, which are answered with 400, and disconnects.
-    """
+    """Return whether a record is logged: not if a malformed request or a disconnect caused the error."""
     error = record.exc_info[1] if record.exc_info else None
     return not isinstance(error, (HttpProcessingError, web.RequestPayloadError, ConnectionError))
 

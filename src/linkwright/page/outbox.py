@@ -25,13 +25,13 @@ class ScaledData:
     """The content of a display, which is packed for a page just before it is sent.
 
     Args:
-        key: its key in outboxes.
+        key: the key of the content in outboxes.
         content: the full content.
-        shrink: reduces it to a number of bytes.
-        pack: makes the binary frame.
+        shrink: returns the content reduced to a number of bytes.
+        pack: returns the binary frame with some content.
 
     Attributes:
-        gone: whether it was replaced or removed, and must not be sent again.
+        gone: whether the content was replaced or removed, and must not be sent any more.
     """
 
     def __init__(self, key: str, content: DataContent, shrink: Shrink, pack: Pack) -> None:
@@ -48,9 +48,9 @@ class ScaledData:
         return self._pack(self._content)
 
     async def fitting(self, room: int) -> bytes:
-        """Return the frame with as much content as fits into `room` bytes.
+        """Return a frame with as much content as fits into about `room` bytes.
 
-        It is cached for pages with similar connections.
+        The room is rounded down to a power of two, so that pages with similar connections share a frame.
         """
         if len(self.full_frame) <= room:
             return self.full_frame
@@ -64,12 +64,12 @@ class ScaledData:
 
 
 class InPieces:
-    """A frame that an outbox sends in pieces, with other payloads between them.
+    """A frame that an outbox sends in chunks, with other payloads between them.
 
     Args:
         payload: the content.
-        number: a number that differs from those before.
-        size: returns the bytes that the next piece may have.
+        number: the number of the transfer, which is unique for the page.
+        size: returns the size of the next chunk in bytes.
     """
 
     def __init__(self, payload: ScaledData, number: int, size: Callable[[], int]) -> None:
@@ -81,13 +81,13 @@ class InPieces:
 
     @property
     def done(self) -> bool:
-        """Whether all chunks were sent, or are not needed any more."""
+        """Whether all chunks were sent, or the content was replaced or removed."""
         return self.payload.gone or self._given >= len(self.payload.full_frame)
 
     def since(self, seen: int) -> tuple[bytes | None, int]:
-        """Return the next chunk, or None if there is none.
+        """Return the next chunk, or None if there is none, and `seen` unchanged.
 
-        The argument is ignored, because chunks are counted here.
+        This object itself counts the chunks.
         """
         if self.done:
             return None, seen
@@ -106,9 +106,9 @@ Outgoing = str | bytes
 
 
 class Changes(Protocol):
-    """Content that is sent as changes: each page gets the combined changes that it lacks.
+    """Content that is sent as changes: each page receives the combined changes that it lacks.
 
-    A slow page then gets many changes in one frame, and no content that is gone again.
+    A slow page then receives many changes in one frame, and no content that has been removed since.
     """
 
     key: str
@@ -118,10 +118,10 @@ class Changes(Protocol):
         """Return the message or binary frame for a page.
 
         Args:
-            seen: the number that this method returned for the page's previous message; 0 for a page that has nothing.
+            seen: the number that this method returned for the page's previous message; 0 for a new page.
 
         Returns:
-            The frame, or None if the page has everything; and the number to pass for the next message.
+            The message or frame, or None if the page lacks nothing; and the number to pass for the next message.
         """
 
 
@@ -164,7 +164,7 @@ class Outbox:
         return key in self._urgent or key in self._ordinary
 
     def hold(self, held: bool) -> None:
-        """Hold back everything except frame tables and transforms, or release it."""
+        """Set whether everything except frame tables and transforms is held back."""
         self.is_held = held
         self._filled.set()
 
@@ -182,7 +182,7 @@ class Outbox:
                 return made
 
     def make(self, payload: Payload) -> Outgoing | ScaledData | None:
-        """Return the message or frame to send for a payload now, or None if there is nothing to send."""
+        """Return what is to be sent for a payload, or None if there is nothing to send."""
         if isinstance(payload, (str, bytes)):
             return payload
         if isinstance(payload, ScaledData):
@@ -220,15 +220,17 @@ class _OnTheWay:
 class Line:
     """Measures the connection to one page.
 
-    Pages acknowledge large messages, which measures the full path including tunnels that have their own buffers. For a
-    page that does not acknowledge them, only the time in which the socket accepted the data is known.
+    A page acknowledges large messages, so that the full path is measured, including tunnels that have their own
+    buffers.
+    For a page that sends no acknowledgements, only the time in which the socket accepted the data is known.
 
     Args:
         clock: returns the time in seconds.
 
     Attributes:
         rate: bytes per second; None until it is known.
-        took: the mean time from a large message to its acknowledgement, over the last ones, seconds; None until known.
+        took: the mean time in seconds from a large message to its acknowledgement, over the last such messages; None
+            until it is known.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
@@ -248,7 +250,7 @@ class Line:
 
     @property
     def is_full(self) -> bool:
-        """Whether large messages should wait until the page has received the earlier messages."""
+        """Whether large messages must wait until the page has acknowledged earlier ones."""
         return self._answers and sum(on_the_way.size for on_the_way in self._on_the_way) >= self.room / 2
 
     @property
@@ -267,7 +269,10 @@ class Line:
         return now
 
     def sent(self, size: int, since: float) -> None:
-        """Record that the socket has accepted a message that was passed to it at time `since`."""
+        """Record that the socket has accepted a message of `size` bytes.
+
+        `since` is the time that `sending` returned.
+        """
         if self._answers or size < BULK:
             return
         while len(self._on_the_way) > _MOST_ON_THE_WAY:
@@ -275,11 +280,11 @@ class Line:
         seconds = self._clock() - since
         if seconds >= _BLOCKED:
             self._learn(size / seconds)
-        elif 2 * size >= self.room:  # it was buffered, in buffers of unknown size
+        elif 2 * size >= self.room:  # some buffer of unknown size took it
             self._learn(float("inf"))
 
     def received(self, count: int) -> None:
-        """Record the number of messages that the page has acknowledged."""
+        """Record that the page has acknowledged its first `count` messages."""
         now = self._clock()
         if not self._answers:
             self._answers = True
@@ -294,9 +299,9 @@ class Line:
                 self._learn(arrived.size / max(took - self._shortest, took / 10, 1e-4))
 
     def _learn(self, rate: float) -> None:
-        """Update the rate with a measurement.
+        """Update the rate with a measurement in bytes per second.
 
-        The measurement may be an outlier, so it at most doubles or halves the rate.
+        A measurement at most doubles or halves the rate, because it may be an outlier.
         """
         known = self.room / _SHARE
         self.rate = min(max(rate, known / 2), known * 2)

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class PageServer:
-    """Listens at an address, with the token of its pages.
+    """Listens at an address, and checks the token of pages.
 
     Args:
         host: the address to listen on; any address except loopback admits other machines that know the token.
@@ -39,7 +39,7 @@ class PageServer:
         self._port_token: tuple[int, PortToken] | None = None
 
     async def open(self) -> None:
-        """Listen, and serve the page; further requests wait for `show`.
+        """Start listening, and serve the page's files; other requests wait for `show`.
 
         Raises:
             LinkwrightError: VIEW101 to VIEW103, the server cannot listen at the address.
@@ -66,7 +66,7 @@ class PageServer:
         return self._port_token is not None and self._port_token[1].pages_wait
 
     def leave_token(self, *, pages_wait: bool) -> None:
-        """Store, when the program ends, whether its pages wait for the next one."""
+        """Store, before the program ends, whether its pages wait for the next program."""
         if self._port_token is not None:
             (port, port_token), self._port_token = self._port_token, None
             leave_token(port, port_token.token, pages_wait=pages_wait)

@@ -1,4 +1,4 @@
-"""The web server: its listening socket, the page, its WebSocket, and the files that the page downloads."""
+"""The web server: its listening socket, the page, the page's WebSocket, and files for the page."""
 
 from __future__ import annotations
 
@@ -88,9 +88,9 @@ _NOT_SENT_LOW_WATER: int | None = getattr(socket, "TCP_NOTSENT_LOWAT", None)
 
 @dataclass(slots=True)
 class _Shown:
-    """The services for pages: the audience that takes their WebSockets, and the guests that show their recordings.
+    """The services for pages: the audience that serves their WebSockets, and the guests.
 
-    `uploads` is created by the first upload request.
+    The guests show recordings that pages upload. `uploads` is created by the first upload request.
     """
 
     audience: Audience
@@ -99,12 +99,12 @@ class _Shown:
 
 
 class WebServer:
-    """Serves one viewer, and the files of the page before there is a viewer.
+    """Serves one viewer, and the files of the page even before the viewer exists.
 
     Args:
         gate: checks requests.
-        meshes: the folders that may be read.
-        downloads: files that were made for pages.
+        meshes: the folders that pages may read from.
+        downloads: files that were generated for pages.
         page_folder: the folder of the built page.
     """
 
@@ -164,7 +164,7 @@ class WebServer:
         """Admit pages, including those that are already waiting.
 
         Args:
-            audience: takes the WebSockets.
+            audience: serves the WebSockets of pages.
             guests: shows the recordings that pages upload; None if uploads are not accepted.
         """
         self._shown.set_result(_Shown(audience, guests))
@@ -209,7 +209,7 @@ class WebServer:
         response.headers.update(security_headers(host))
         response.headers.setdefault("Cache-Control", "no-store")
 
-    # --- answers -----------------------------------------------------------------------------------------------
+    # --- handlers of requests ----------------------------------------------------------------------------------
 
     async def _index(self, request: web.Request) -> web.StreamResponse:
         index = self._page_folder / "index.html"
@@ -218,7 +218,7 @@ class WebServer:
         return await self._page_response(request, index, _PAGE_TYPES[".html"], "no-cache")
 
     async def _proof(self, request: web.Request) -> web.Response:
-        """Prove to a page that was admitted earlier that this is the program that it knows."""
+        """Prove to a page that knows the token that this program knows it too; see `Gate.proof`."""
         proof = self._gate.proof(request.query.get("nonce", ""))
         if proof is None:
             return web.Response(status=400, text="This address only answers the page.\n")
@@ -230,7 +230,7 @@ class WebServer:
         content_type = _PAGE_TYPES.get(Path(parts[-1]).suffix)
         if content_type is None or any(part in ("", ".", "..") or "\0" in part or "\\" in part for part in parts):
             raise web.HTTPNotFound(text="There is no such page.\n")
-        hashed = parts[0] == "assets"  # Vite derives the names of these files from their content
+        hashed = parts[0] == "assets"  # such names contain a hash of the content, by Vite
         cache = "private, max-age=31536000, immutable" if hashed else "no-cache"
         file = self._page_folder / path
         packed = file.with_name(f"{file.name}.gz")
@@ -239,7 +239,8 @@ class WebServer:
         if not _takes_gzip(request):
             vary = {"Vary": "Accept-Encoding"}
             return await self._page_response(request, packed, content_type, cache, vary, unpack=True)
-        # The compressed file has a quarter of the bytes: on a slow connection the page loads in seconds, not tens of
+        # Compression reduces the files to a quarter, so that on a slow connection the page loads in seconds instead of
+        # tens of
         # seconds.
         packing = {"Content-Encoding": "gzip", "Vary": "Accept-Encoding"}
         return await self._page_response(request, packed, content_type, cache, packing)
@@ -254,7 +255,7 @@ class WebServer:
         *,
         unpack: bool = False,
     ) -> web.StreamResponse:
-        """Send a file of the page. All requests share one copy in memory, however slow their readers are."""
+        """Send a file of the page; concurrent requests share one copy of the file in memory."""
         async with self._reading:
             cached = self._page_contents.get((path, unpack))
             try:
@@ -318,11 +319,11 @@ class WebServer:
             return await asyncio.shield(self._shown)
         except asyncio.CancelledError:
             if not self._shown.cancelled():
-                raise  # the client has cancelled the request
+                raise  # the client has disconnected
             raise web.HTTPServiceUnavailable(text="The program ends.\n") from None
 
     async def _show_kept(self, uploads: Uploads, request: web.Request) -> web.Response:
-        """Show a recording that this program made, whose file is already on this machine."""
+        """Show a recording that this program made, without an upload."""
         recording = self._downloads.path(request.match_info["key"])
         if recording is None:
             raise web.HTTPNotFound(text="There is no such recording.\n")
@@ -331,7 +332,7 @@ class WebServer:
     def _shielded(
         self, handler: Callable[[web.Request], Awaitable[web.Response]]
     ) -> Callable[[web.Request], Awaitable[web.StreamResponse]]:
-        """Wrap a handler so that it refuses requests without the token."""
+        """Return a handler that calls another one only for requests with the token."""
 
         async def asked(request: web.Request) -> web.StreamResponse:
             return await handler(request) if self._gate.is_shown_token(request.query) else _without_token()
@@ -375,9 +376,9 @@ _UPLOADS: tuple[tuple[str, str, Callable[[Uploads, web.Request], Awaitable[web.R
 
 
 def _audience_of(shown: _Shown, request: web.Request) -> Audience:
-    """Return the pages of the recording that a request names.
+    """Return the audience of the recording that a request names, if that is still shown.
 
-    If the recording is no longer shown, the pages of the viewer are returned.
+    Otherwise, return the audience of the viewer.
     """
     key = request.query.get("recording", "")
     found = None if shown.guests is None or not key else shown.guests.audience(key)
@@ -385,7 +386,7 @@ def _audience_of(shown: _Shown, request: web.Request) -> Audience:
 
 
 def _is_from_here(request: web.Request) -> bool:
-    """Return whether a request is from this machine: over loopback, or from its own address."""
+    """Return whether a request is from this machine: over loopback, or from the server's own address."""
     transport = request.transport
     peer, own = (transport and transport.get_extra_info(name) for name in ("peername", "sockname"))
     if not peer or not own:
@@ -396,7 +397,7 @@ def _is_from_here(request: web.Request) -> bool:
 
 
 def _own_displays(request: web.Request) -> str:
-    """Return the name in a WebSocket's address for the page's own displays; empty for the shared ones."""
+    """Return the name of the page's own configuration in its address; empty for the shared one."""
     key = request.query.get("own", "")
     return key if _OWN_KEY.fullmatch(key) else ""
 
@@ -420,9 +421,10 @@ def _refused(status: int, reason: str) -> web.Response:
 async def _file_response(
     request: web.Request, path: Path, content_type: str, cache: str, *, packs: bool
 ) -> web.Response:
-    """Return a file with an ETag that changes with its content; 304 if the browser already has it.
+    """Return a response with a file, or 304 if the browser already has this version of the file.
 
-    With `packs` the file is compressed if that makes it clearly smaller, with the uncompressed length in a header.
+    The ETag changes with the content. With `packs`, the file is compressed if that makes it clearly smaller, and a
+    header has the uncompressed length.
 
     aiohttp's own FileResponse is not used: it also looks for compressed files next to the requested one, which no check
     covers.
@@ -451,7 +453,7 @@ def _attached(name: str) -> str:
 
 
 async def _streamed(request: web.Request, path: Path) -> web.StreamResponse:
-    """Send a file for download, however long it is: only one block at a time is in memory."""
+    """Send a file for download in blocks, so that only one block at a time is in memory."""
     try:
         file = await asyncio.to_thread(path.open, "rb")
     except OSError:
@@ -487,7 +489,7 @@ class _FileRead:
 
 
 def _read(path: Path, known: str, *, unpack: bool = False) -> _FileRead:
-    """Read a regular file, or unpack a compressed one.
+    """Return the current version of a regular file, decompressed if `unpack` is set.
 
     The content is omitted if the ETag is in `known`, an If-None-Match header.
     """
@@ -511,11 +513,11 @@ def listen(host: str, port: int | None) -> socket.socket:
 
     Args:
         host: a name or address of this machine.
-        port: 0 for any; None for `DEFAULT_PORT`, or the next free one if it is in use.
+        port: 0 for any port; None for `DEFAULT_PORT`, or the next free one if that is in use.
 
     Raises:
-        LinkwrightError: VIEW101, the requested port is in use; VIEW102, it is not possible to listen on it; VIEW103,
-            the host is unknown.
+        LinkwrightError: VIEW101, the requested port is in use; VIEW102, it is not possible to listen on the port;
+            VIEW103, the host is unknown.
     """
     try:
         family, _, _, _, address = socket.getaddrinfo(host, 0, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)[0]
@@ -551,7 +553,7 @@ def _listen_at(family: int, address: tuple[str | int, int]) -> socket.socket:
         if os.name == "posix":
             listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         listener.bind(address)
-        listener.listen(64)  # immediately: two programs may both bind a port, but only one can listen
+        listener.listen(64)  # detects a conflict: two programs may bind a port, but only one can listen
         listener.setblocking(False)
     except (OSError, OverflowError) as error:
         listener.close()
@@ -577,13 +579,11 @@ def _cannot_listen(host: str, port: int, error: OSError) -> Diagnostic:
 
 
 def keep_short(transport: asyncio.Transport) -> None:
-    """Limit the unsent data of a connection, but not the data in flight.
+    """Limit the amount of unsent data in a connection's buffers, without limiting the data in flight.
 
-    Unsent data in the buffer can neither be replaced by newer data nor be overtaken.
-
-    The operating system lets its send buffer grow to megabytes, which take many seconds on a slow connection. Where it
-    offers no other limit (Windows), its buffer is left unchanged, and only pages' acknowledgements keep the connection
-    free.
+    Buffered data can neither be replaced by newer data nor be overtaken. The operating system lets its send buffer grow
+    to megabytes, which take many seconds on a slow connection. Where it offers no other limit (Windows), its buffer
+    is left unchanged, and only the pages' acknowledgements limit the buffered data.
     """
     transport.set_write_buffer_limits(high=MOST_UNSENT)
     connection = transport.get_extra_info("socket")

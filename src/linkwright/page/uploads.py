@@ -1,7 +1,7 @@
-"""Recordings that pages upload; their files arrive in blocks and are stored in a temporary folder.
+"""Recordings that pages upload, whose files arrive in blocks and are stored in a temporary folder.
 
-A page first announces the files, and learns whether there is enough space. Uploads that are cancelled or stall are
-removed. Every holder of the token may upload. File names are checked, and none can point outside the folder.
+A page first announces the files, and receives a key if there is enough space. Uploads that are cancelled or stall are
+removed. Every page with the token may upload. File names are checked, and none can refer to a file outside the folder.
 """
 
 from __future__ import annotations
@@ -41,10 +41,10 @@ _DOTS = frozenset({".", ".."})
 
 
 class Guests(Protocol):
-    """Shows recordings to pages of this server."""
+    """The recordings that are shown to pages of this server, in addition to its viewer."""
 
     async def open(self, path: Path, scratch: TemporaryDirectory[str] | None) -> str:
-        """Show a recording, and return its name for pages.
+        """Show a recording, and return the key by which pages name it.
 
         `scratch`, if given, is removed when the recording is no longer shown.
 
@@ -53,7 +53,7 @@ class Guests(Protocol):
         """
 
     def audience(self, key: str) -> Audience | None:
-        """Return the pages that show the recording of a name; None if there is no such recording."""
+        """Return the pages that show the recording with a key, or None if there is no such recording."""
 
     async def close(self) -> None:
         """Stop showing recordings."""
@@ -73,7 +73,7 @@ class _Announcement(msgspec.Struct, forbid_unknown_fields=True):
 
 @dataclass(slots=True)
 class _Upload:
-    """An upload in progress."""
+    """An upload in progress, with its temporary folder."""
 
     announced: _Announcement
     scratch: TemporaryDirectory[str]
@@ -87,7 +87,7 @@ class _Upload:
 
     @property
     def target(self) -> Path:
-        """The path to open."""
+        """The path of the recording's file or folder, to be opened when the upload is complete."""
         files = self.announced.files
         return self.folder / files[0].name if len(files) == 1 else self.folder
 
@@ -107,7 +107,7 @@ class Uploads:
         self._sweeping: asyncio.TimerHandle | None = None
 
     def close(self) -> None:
-        """Remove all uploads."""
+        """Cancel all uploads, and remove their files."""
         if self._sweeping is not None:
             self._sweeping.cancel()
         for upload in self._uploads.values():
@@ -115,7 +115,10 @@ class Uploads:
         self._uploads.clear()
 
     async def show(self, request: web.Request, path: Path) -> web.Response:
-        """Show a recording of this machine, which is not removed afterwards; return the response for the page."""
+        """Show a recording that is a file of this machine, and return the response for the page.
+
+        The file is not removed afterwards.
+        """
         try:
             return web.json_response({"recording": await self._guests.open(path, None)})
         except LinkwrightError as error:
@@ -124,7 +127,7 @@ class Uploads:
     # --- requests ----------------------------------------------------------------------------------------------
 
     async def announce(self, request: web.Request) -> web.Response:
-        """Answer an announcement with a key for the upload, or with the reason if there is no space."""
+        """Respond to an announcement with a key for the upload, or with the reason for refusing it."""
         try:
             announced = msgspec.json.decode(await request.read(), type=_Announcement)
         except msgspec.DecodeError as error:
@@ -179,7 +182,7 @@ class Uploads:
         except OSError as error:
             self._remove(request.match_info["key"])
             if request.transport is None:
-                return web.Response(status=400)  # the page has closed
+                return web.Response(status=400)  # the page was closed
             return _refused(
                 request, phrase("the recording could not be stored: {reason}", reason=foreign(error.strerror or error))
             )
@@ -206,11 +209,9 @@ class Uploads:
         return web.json_response({"recording": shown})
 
     async def give_up(self, request: web.Request) -> web.Response:
-        """Cancel an upload, and remove the received part of the recording."""
+        """Cancel an upload, and remove the files that have arrived."""
         self._remove(request.match_info["key"])
         return web.Response(status=204)
-
-    # -----------------------------------------------------------------------------------------------------------
 
     async def _write(self, request: web.Request, upload: _Upload, path: Path, size: int) -> int:
         """Write the body of a request to a file block by block, and return its size in bytes."""
@@ -239,7 +240,7 @@ class Uploads:
             self._sweeping = asyncio.get_running_loop().call_later(PATIENCE / 4, self._sweep)
 
     def _sweep(self) -> None:
-        """Remove uploads that were abandoned."""
+        """Cancel the uploads for which no data has arrived for a while."""
         self._sweeping = None
         now = asyncio.get_running_loop().time()
         for key, upload in list(self._uploads.items()):
@@ -254,7 +255,10 @@ def _refused(request: web.Request, message: Phrase) -> web.Response:
 
 
 def _problem(text: str) -> web.Response:
-    """Return the response with an error for the user. Its status is 200, since browsers log other codes."""
+    """Return a response with an error for the user.
+
+    Its status is 200, because browsers log responses with other codes as errors.
+    """
     return web.json_response({"problem": text})
 
 

@@ -1,1 +1,1 @@
-"""Page features of a viewer, which handle requests that are not about displays; each is a module or a package."""
+"""The page features of a viewer, each a module or package, which handle most requests of pages."""

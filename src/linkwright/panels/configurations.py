@@ -1,4 +1,4 @@
-"""Edit configurations from pages: add and remove displays, undo, open, save."""
+"""Handles edits of configurations from pages: adding and removing displays, undo, open, and save."""
 
 from __future__ import annotations
 
@@ -64,12 +64,12 @@ class Request(Generic[Message]):
 
 
 class ConfigurationFeature(PageFeature):
-    """Handles pages' requests about the configuration.
+    """Handles pages' requests about configurations.
 
-    Unsaved edits are never lost unless the page confirms it.
+    Unsaved edits are never discarded unless the page confirms it.
 
     Args:
-        viewer: the viewer that it belongs to.
+        viewer: the viewer of the feature.
         recent: the recently opened or saved files.
     """
 
@@ -79,16 +79,16 @@ class ConfigurationFeature(PageFeature):
         self._sent: dict[VisualizationManager, Configuration] = {}
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
-        """Return the current state of the configuration."""
+        """Return the current state of the configuration: its file, and the names of undo and redo."""
         self._sent[manager] = self._state(manager)
         return [self._sent[manager]]
 
     def manager_closed(self, manager: VisualizationManager) -> None:
-        """Drop the state that was sent to the manager's pages."""
+        """Discard the state that was sent to the manager's pages."""
         self._sent.pop(manager, None)
 
     def edited(self, manager: VisualizationManager) -> None:
-        """Send pages the state of the configuration, if it has changed."""
+        """Send the state of the configuration to its pages if the state has changed."""
         state = self._state(manager)
         if self._sent.get(manager) != state:
             self._sent[manager] = state
@@ -260,7 +260,7 @@ ConfigurationFeature.RECEIVES = tuple(_DEEDS)
 
 
 def _displays_of(manager: VisualizationManager, identities: list[str]) -> list[ViewerDisplay]:
-    """Return the displays with these IDs in the order of the tree, without those that no longer exist."""
+    """Return the displays with these IDs, in the order of the tree; unknown IDs are ignored."""
     selected = set(identities)
     return [display for display in manager.displays if display.id in selected]
 
@@ -272,7 +272,7 @@ def _folder(manager: VisualizationManager) -> Path:
 
 
 def _name(text: str) -> str:
-    """Check a name that a page sent, and return it.
+    """Return a name that a page sent, with each run of white space replaced by a blank.
 
     Raises:
         ValueError: the name is empty or too long.
@@ -284,12 +284,10 @@ def _name(text: str) -> str:
 
 
 class PanelsFeature(PageFeature):
-    """The open panels of pages, which start with the file's panels.
+    """The open panels of pages, which are initially those of the file.
 
-    The file gets the panels of the page that changed last.
-
-    Other open pages are not notified, since each page has its own panels. If there is no file, nothing is saved: the
-    browser remembers the panels.
+    Each page has its own panels, so a change does not affect the other pages. The file receives the panels of the page
+    that changed them last. If there is no file, only the browser stores the panels.
     """
 
     RECEIVES: ClassVar[tuple[type, ...]] = (ShowPanels,)

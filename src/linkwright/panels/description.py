@@ -1,4 +1,4 @@
-"""Descriptions for pages: details, findings, and the form for their arguments."""
+"""Descriptions for pages: details, findings, and the form for xacro arguments."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ Give = Callable[[dict[str, str]], object]
 
 
 class ArgumentsFeature(PageFeature):
-    """Shows every page the same form, and forwards the first answer."""
+    """Shows all pages a form for arguments, and passes on the values of the first page that answers."""
 
     RECEIVES: ClassVar[tuple[type, ...]] = (GiveArguments,)
 
@@ -52,16 +52,21 @@ class ArgumentsFeature(PageFeature):
         self._give: Give | None = None
 
     def opening(self) -> list[ServerMessage]:
-        """Return the form."""
+        """Return the form, which is empty if no arguments are requested."""
         return [self._form]
 
     def ask(self, form: ArgumentForm, give: Give | None) -> None:
-        """Show a form; `give` is called with the values of the first answer."""
+        """Show a form to all pages.
+
+        Args:
+            form: the requested arguments.
+            give: called with the values of the first answer, by name; None if `form` is empty.
+        """
         self._form, self._give = form, give
         self.context.pages.publish(form)
 
     def receive(self, page: Page, message: GiveArguments) -> None:
-        """Handle the values that a page gives to the requested arguments."""
+        """Close the form, and pass on the values that a page gives to the requested arguments."""
         give, names = self._give, set(self._form.names)
         if give is not None:
             self.ask(NOTHING_ASKED, None)
@@ -72,15 +77,15 @@ Part = TypeVar("Part")
 
 
 class KnownDescription:
-    """The description of a display. All methods may be called in another thread.
+    """The description that a display shows. All methods may be called in another thread.
 
     Args:
         display: the ID of the RobotModel display.
-        revision: counts the descriptions of the display.
+        revision: the number of the description, counted for each display.
         robot: the robot.
         text: the text from which the robot was read.
         prefix: the display's TF Prefix.
-        files: the files from which the text was made, as far as they are known.
+        files: the known files from which the text was made.
     """
 
     def __init__(
@@ -95,14 +100,14 @@ class KnownDescription:
 
     @cached_property
     def texts(self) -> SourceTexts:
-        """The files of the description."""
+        """The source texts of the description's files."""
         from linkwright.panels.description_details import SourceTexts
 
         return SourceTexts(self.robot.element, self._files)
 
     @cached_property
     def account(self) -> Description:
-        """The details of its links and joints."""
+        """The details of the description's links and joints, for pages."""
         from linkwright.panels.description_details import account
 
         return account(
@@ -115,29 +120,35 @@ class KnownDescription:
         )
 
     def changed_from(self, before: KnownDescription | None) -> DescriptionChanged:
-        """Return the links and joints that differ from the previous description; empty for a first one."""
+        """Return the links and joints that differ from those of the previous description.
+
+        The lists are empty if `before` is None.
+        """
         links = _changed(before.robot.links, self.robot.links) if before else []
         joints = _changed(before.robot.joints, self.robot.joints) if before else []
         return DescriptionChanged(self.display, self.revision, links, joints)
 
     def named_text(self, file: str) -> DescriptionText:
-        """Return the text of one of its files, or the expanded text for an empty name.
+        """Return the text of one of the description's files, or the expanded text for an empty name.
 
-        Files that do not belong to the description are refused.
+        The text is None for a file that does not belong to the description.
         """
         text = self.text if file == "" else self.texts.text(file)
         return DescriptionText(self.display, self.revision, file, text)
 
     def findings(self, finder: PackageFinder) -> InertiaFindings:
-        """Return the implausible masses; they are computed each time, because meshes may have changed."""
+        """Return the findings about implausible masses and inertias.
+
+        They are computed for each call, because meshes may have changed.
+        """
         from linkwright.panels.description_details import implausible
 
         return InertiaFindings(self.display, self.revision, implausible(self.robot, finder))
 
 
 def _changed(before: Mapping[str, Part], after: Mapping[str, Part]) -> list[str]:
-    """Return the links or joints that are new or different; their places in the text do not count."""
-    # Comparing model parts ignores their elements, which have the places.
+    """Return the names of the links or joints that are new or different, apart from their positions."""
+    # Comparing model parts ignores their elements, which have the source positions.
     return [name for name, part in after.items() if before.get(name) != part]
 
 
@@ -145,9 +156,9 @@ _Question = AskDescription | AskDescriptionText | AskInertia | AskProvenance
 
 
 class DescriptionFeature(PageFeature):
-    """Answers pages' requests about descriptions in order, in a thread.
+    """Answers pages' requests about descriptions, one at a time, in a thread.
 
-    If a page repeats a request before it is answered, only the newest one is answered.
+    If a page repeats a request before it was answered, only the last one is answered.
     """
 
     RECEIVES: ClassVar[tuple[type, ...]] = (AskDescription, AskDescriptionText, AskInertia, AskProvenance)
@@ -160,7 +171,7 @@ class DescriptionFeature(PageFeature):
         self._thinking = asyncio.Lock()
 
     def robot_changed(self) -> None:
-        """Notify pages of the robots that have changed."""
+        """Send pages the names of the links and joints that have changed."""
         shown: set[str] = set()
         for manager in self.managers.all():
             for display in manager.robot_models():
@@ -173,7 +184,7 @@ class DescriptionFeature(PageFeature):
             del self._known[gone]
 
     def diagnostics_changed(self, diagnostics: Sequence[Diagnostic]) -> None:
-        """Store the texts of files with findings, as they were when the findings were made."""
+        """Store the texts that the findings refer to, because the files may change later."""
         self._faulty = {
             diagnostic.source.name: diagnostic.source.text
             for diagnostic in diagnostics
@@ -181,7 +192,7 @@ class DescriptionFeature(PageFeature):
         }
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
-        """Return the descriptions that pages can request, without changed links."""
+        """Return the revision of each description that pages can request."""
         known = [self._look_at(display) for display in manager.robot_models()]
         return [
             DescriptionChanged(known_description.display, known_description.revision, [], [])
@@ -200,13 +211,13 @@ class DescriptionFeature(PageFeature):
         task.add_done_callback(lambda done: self._answers.pop(key) if self._answers.get(key) is done else None)
 
     def page_closed(self, page: Page) -> None:
-        """Drop the page's requests."""
+        """Cancel the page's requests."""
         for (asking, _), task in list(self._answers.items()):
             if asking is page:
                 task.cancel()
 
     def close(self) -> None:
-        """Stop answering requests."""
+        """Cancel all requests."""
         for task in self._answers.values():
             task.cancel()
 
@@ -233,7 +244,7 @@ class DescriptionFeature(PageFeature):
             page.send(reply)
 
     def _look_at(self, display: RobotModelDisplay) -> KnownDescription | None:
-        """Return the description that a display currently shows, with a new revision if it has changed."""
+        """Return the description that a display shows now, with a new revision if it has changed; or None."""
         robot, prefix = display.robot, display.properties.text("TF Prefix")
         known = self._known.get(display.id)
         if robot is None:
@@ -269,13 +280,13 @@ class DiagnosticsFeature(PageFeature):
         return [self._shown]
 
     def diagnostics_changed(self, diagnostics: Sequence[Diagnostic]) -> None:
-        """Show new findings; an empty list clears them."""
+        """Show new findings instead of the current ones; the list may be empty."""
         self._found = diagnostics
         self._shown = self._all()
         self.context.pages.publish(self._shown)
 
     def robot_changed(self) -> None:
-        """Show a finding while no part of the robot is visible."""
+        """Show an additional finding while nothing of a robot can be drawn (VIEW207)."""
         shown = self._all()
         if shown != self._shown:
             self._shown = shown
@@ -301,7 +312,7 @@ def _unseen(model: RobotModelDisplay) -> Diagnostic | None:
 
 
 def item_of(diagnostic: Diagnostic) -> DiagnosticItem:
-    """Return a diagnostic in the form for pages, with the source line that it points to."""
+    """Return a diagnostic in the page's form, with the source line that it refers to."""
     span, source = diagnostic.span, diagnostic.source
     excerpt = source.line(span.line) if span and source and source.name == span.file else ""
     return DiagnosticItem(

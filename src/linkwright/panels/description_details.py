@@ -1,6 +1,6 @@
-"""Details of a description for pages: links and joints with their places, texts, implausible masses.
+"""Details of a description for pages: links, joints, source positions, texts and implausible masses.
 
-It is imported when the first page asks for details.
+This module is imported when the first page requests details.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ _MOST_CALLS = 20
 
 
 class Places:
-    """Looks up the places of the links and joints of one description.
+    """Looks up the source positions of the links and joints of one description.
 
     Args:
         text: the expanded description.
@@ -51,13 +51,19 @@ class Places:
         try:
             document, _ = parse_as_urdfdom(text, _EXPANDED)
         except LinkwrightError:
-            return  # should not happen: a robot was read from this text
+            return  # unexpected, because a robot was read from this text
         for element in document.root.elements():
             key = (element.tag, element.attributes.get("name", ""))
             self._expanded.setdefault(key, element)
 
     def of(self, tag: str, name: str, element: Element | None) -> Written:
-        """Return the place of a link or joint; `element` is the element from which it was read."""
+        """Return the positions of a link or joint in the expanded text and in the source files.
+
+        Args:
+            tag: ``link`` or ``joint``.
+            name: the name of the link or joint.
+            element: the element from which it was read; None if that is unknown.
+        """
         twin = self._expanded.get((tag, name))
         expanded = None if twin is None else _range(twin)
         if element is None or element.source is None or element.source.name.startswith("<"):
@@ -77,7 +83,7 @@ def _calls(element: Element) -> Iterator[CallSite]:
 
 
 def _range(element: Element) -> SourceRange | None:
-    """Return the range of the element, or only of its start tag's name if its end is unknown."""
+    """Return the source range of an element, or of its tag name if the end is unknown; or None."""
     found = element_range(element)
     span = element.span() if found is None or element.source is None else element.source.span(*found)
     if span is None:
@@ -94,8 +100,8 @@ def account(robot: Robot, text: str, files: list[str], *, display: str, revision
         robot: the robot that was read from the text.
         text: the expanded description.
         files: the files from which the text was made.
-        display: the ID of the RobotModel display that shows it.
-        revision: counts the descriptions of the display.
+        display: the ID of the RobotModel display that shows the robot.
+        revision: the number of the description, counted for each display.
         prefix: the display's TF Prefix.
     """
     places = Places(text)
@@ -160,7 +166,7 @@ def _finite(number: float) -> float | None:
 
 
 def _unit(axis: tuple[float, float, float]) -> list[float]:
-    """Return the axis with length 1, or zeros if it is not valid."""
+    """Return the axis scaled to length 1, or zeros if its length is 0 or not finite."""
     length = float(np.linalg.norm(axis))
     if not (isfinite(length) and length > 0):
         return [0.0, 0.0, 0.0]
@@ -168,14 +174,14 @@ def _unit(axis: tuple[float, float, float]) -> list[float]:
 
 
 class SourceTexts:
-    """The files of one description, and no others.
+    """The texts of the files of one description; other files cannot be read through this class.
 
-    The texts of its elements are in memory, as they were when the description was made. A file that contributed only
-    values, such as a YAML file, is read on request.
+    The texts that contain elements are in memory, as they were when the description was made. A file that contributed
+    only values, such as a YAML file, is read on request.
 
     Args:
         root: the root element of the description.
-        files: the files from which it was made, the main one first, as far as they are known.
+        files: the known files from which the description was made, the main one first.
     """
 
     def __init__(self, root: Element | None, files: Iterable[Path]) -> None:
@@ -188,7 +194,7 @@ class SourceTexts:
         return list(dict.fromkeys([*self._files, *self._read]))
 
     def text(self, name: str) -> str | None:
-        """Return the text of a file; None if it does not belong to the description, or no longer exists."""
+        """Return the text of a file, or None if it cannot be read or does not belong to the description."""
         source = self._read.get(name)
         if source is not None:
             return source.text
@@ -222,7 +228,7 @@ def _sites(element: Element, known: set[int]) -> Iterator[SourceText | None]:
 
 
 def implausible(robot: Robot, finder: PackageFinder) -> list[InertiaFinding]:
-    """Return the findings about masses and inertias, each with its link; see `linkwright.lint.by_link`."""
+    """Return the findings about a robot's masses and inertias, each with the name of its link."""
     return [
         InertiaFinding(link, finding.code, finding.message, finding.hint or "")
         for link, finding in inertia_findings(robot, finder)

@@ -19,14 +19,14 @@ from linkwright.rviz.displays.catalogue import display_classes
 
 
 class DisplaysFeature(PageFeature):
-    """Forwards messages of pages to displays."""
+    """Passes messages of pages on to the displays that they concern."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
         self._sizes: WeakKeyDictionary[ViewerDisplay, dict[Page, ImageSize]] = WeakKeyDictionary()
 
     def receive(self, page: Page, message: SetProperty | MeshStatus | MarkerFeedback | ImageSize) -> None:
-        """Set a property, or forward the message to its display; ignored if the display was removed."""
+        """Set a property, or pass the message on; a message for a removed display is ignored."""
         manager = self.managers.of(page)
         if isinstance(message, SetProperty):
             manager.set_property(page, message.id, message.value)
@@ -38,13 +38,13 @@ class DisplaysFeature(PageFeature):
                 display.receive(message)
 
     def page_closed(self, page: Page) -> None:
-        """Drop the panel sizes of a page, so that images fit the panels of the other pages."""
+        """Remove the panel sizes of a page, so that images fit the panels of the other pages."""
         for display, sizes in list(self._sizes.items()):
             if sizes.pop(page, None) is not None:
                 self._send_size(display)
 
     def _send_size(self, display: ViewerDisplay) -> None:
-        """Send a display the size of the largest panel that shows it; zero if there is none."""
+        """Send a display the largest width and height of its panels in all pages, or 0 if there are none."""
         sizes = self._sizes[display].values()
         width = max((size.width for size in sizes), default=0)
         height = max((size.height for size in sizes), default=0)
@@ -52,7 +52,7 @@ class DisplaysFeature(PageFeature):
 
 
 class PointsFeature(PageFeature):
-    """Sends the fields of selected points; pages themselves have only positions and colours."""
+    """Sends pages the fields of selected points; without it, pages know only positions and colours."""
 
     def receive(self, page: Page, message: AskPoint) -> None:
         """Send the fields of a point, if it is still shown."""
@@ -67,9 +67,9 @@ class PointsFeature(PageFeature):
 
 
 def choices(node: Node) -> DisplayChoices:
-    """Return all display classes that can be added, groups last, and the topics of other nodes by name.
+    """Return the display classes for the Add dialog, groups last, and the topics of other nodes.
 
-    It imports every display, so pages request it only when the user opens the dialog.
+    All displays are imported for this, so pages request it only when the user opens the dialog.
     """
     displays = sorted(display_classes(), key=lambda display: (display.CLASS == GROUP, display.CLASS))
     by_message: dict[str, list[str]] = {}
@@ -88,9 +88,9 @@ def choices(node: Node) -> DisplayChoices:
 
 
 def show_topic(display: ViewerDisplay, topic: str) -> None:
-    """Set the topic of a new display, with the QoS that its publishers offer.
+    """Set the topic of a new display, with a QoS that its publishers offer.
 
-    RViz uses its defaults, which do not receive a sensor's Best Effort messages.
+    RViz uses its default QoS, with which the Best Effort messages of a sensor are not received.
     """
     path = display.TOPIC
     spec = next((spec for spec in display.schema() if (spec.name,) == path[:1]), None)

@@ -1,4 +1,4 @@
-"""Send goals of tools to actions."""
+"""Sends the goals of tools to action servers."""
 
 from __future__ import annotations
 

@@ -33,7 +33,7 @@ class NodeWithSliders(RunningNode, Protocol):
 
     @property
     def panel(self) -> JointPanel:
-        """The sliders."""
+        """The sliders of the node."""
 
 
 class JointsFeature(PageFeature):
@@ -66,7 +66,7 @@ class JointsFeature(PageFeature):
         return [self._controls(self._panel), JointPositions(self._panel.positions())]
 
     def receive(self, page: Page, message: SetJoint | SetJoints | RandomizeJoints | CenterJoints) -> None:
-        """Handle a request. Unknown joints, and joints that mimic another, are ignored."""
+        """Move joints; unknown joints, and joints that mimic another joint, are ignored."""
         panel = self._panel
         if panel is None:
             return

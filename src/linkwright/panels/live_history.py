@@ -1,4 +1,4 @@
-"""The messages of the last minutes, stored so that the viewer's own subscriptions can receive them again."""
+"""The messages of the last minutes, stored so that they can be delivered to the viewer again."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ _MOST_FRESH = 16
 
 
 class LiveHistory:
-    """Stores the messages of the viewer's subscriptions, and shows them at a past time.
+    """Stores the messages of the viewer's subscriptions, and delivers those of a past time again.
 
-    It adds no subscriptions. While a past time is shown, new messages are stored but not shown.
+    No further subscriptions are created for this. While a past time is shown, new messages are stored but not shown.
 
     Args:
         context: the context of the viewer.
@@ -40,7 +40,7 @@ class LiveHistory:
 
     Attributes:
         live: whether the present is shown.
-        on_reset: called when time goes back, so that displays drop what they show.
+        on_reset: called when the displayed time jumps back, so that displays discard their content.
         changed: called when `live` has changed.
     """
 
@@ -69,7 +69,7 @@ class LiveHistory:
 
     @cached_property
     def playback(self) -> Playback:
-        """The playback whose output are the subscriptions; created when a past time is first shown."""
+        """The playback that delivers messages to the subscriptions, created when a past time is first shown."""
         from linkwright.bag.playback import Playback
 
         made = Playback(self._handle, self.history, self, self._failed)
@@ -84,7 +84,10 @@ class LiveHistory:
 
     @property
     def span_ns(self) -> tuple[int, int]:
-        """The times of the oldest and the newest message, or the present; nanoseconds since the epoch."""
+        """The times of the oldest and the newest message in nanoseconds since the epoch.
+
+        Without messages, both are the current time.
+        """
         with self._lock:
             if self._stored is not None:
                 return self._stored.start_ns, self._stored.end_ns
@@ -93,11 +96,11 @@ class LiveHistory:
 
     @property
     def size(self) -> int:
-        """The size of the stored messages in bytes, without the newest ones."""
+        """The size of the stored messages in bytes, except the newest ones, which are not serialized yet."""
         return 0 if self._stored is None else self._stored.size
 
     def freeze(self) -> None:
-        """Pause the displays while messages are still stored."""
+        """Stop showing new messages, while they are still stored."""
         if not self.live:
             return
         with self._lock:
@@ -111,14 +114,13 @@ class LiveHistory:
         self.changed()
 
     def go_live(self) -> None:
-        """Return to showing the present."""
+        """Return to the present, unless it is already shown."""
         if self.live:
             return
         self.playback.pause()
         self._context.graph_changes.unwatch(self._review)
         self._context.held_time.release(self._context.node.get_clock())
-        # Wait for the next iteration of the loop: listeners to the time jump must drop past data before the present is
-        # shown.
+        # Show the present in the next iteration of the loop: listeners to the time jump must discard past data first.
         asyncio.get_running_loop().call_soon(self._show_present)
 
     def topics(self) -> dict[str, SavedTopic]:
@@ -155,7 +157,7 @@ class LiveHistory:
         return in_simulated_time(messages)
 
     def before(self, topics: Collection[str], length_ns: int, most_bytes: int) -> list[Recorded]:
-        """Return the messages of some topics in a period that ends at the displayed time.
+        """Return the messages of some topics in the `length_ns` nanoseconds before the displayed time.
 
         The list is empty if the messages exceed `most_bytes`.
         """
@@ -189,7 +191,7 @@ class LiveHistory:
         return frozenset(subscription.name for subscription in self._subscriptions()) - {CLOCK_TOPIC}
 
     def publish_time(self, stamp_ns: int) -> None:
-        """Set the viewer's clock to a time, or publish the simulated time that was current then."""
+        """Hold the viewer's clock at a time, or deliver the simulated time that was current then."""
         if self.live:
             return
         self._went_back = self._went_back or stamp_ns < self.playback.position_ns
@@ -201,8 +203,6 @@ class LiveHistory:
         """Deliver a message to the subscriptions of its topic."""
         if not self.live:
             self._give(self._subscriptions(), topic, stamp_ns, data)
-
-    # ----------------------------------------------------------------------------------------------------------
 
     def _intake(self, subscription: Subscription[Any], message: Any) -> bool:
         """Store a message, once per topic, and return whether to deliver it to the subscription.
@@ -217,16 +217,16 @@ class LiveHistory:
             return self.live
         if type(message) is QueuedMessage:
             message = message.message
-        with self._lock:  # so that messages that arrive during the return to the present are shown once and in order
+        with self._lock:  # a return to the present must not duplicate or reorder messages
             self._fresh.append((topic, self._now_ns(), message))
             if not self.live or len(self._fresh) >= _MOST_FRESH:
                 self._written()
             return self.live
 
     def _written(self) -> History:
-        """Append the newest messages to the history, and return it.
+        """Append the newest messages to the history, and return the history.
 
-        Messages never change after they have arrived, so appending them can be deferred.
+        A message never changes after its arrival, so serializing it can be deferred.
         """
         if self._stored is None:
             from linkwright.bag.history import History
@@ -239,10 +239,10 @@ class LiveHistory:
         return history
 
     def _store(self, history: History, topic: str, at_ns: int, message: Any, *, thins: bool) -> None:
-        """Store a message; with `thins`, a message with the same content as before is stored compactly.
+        """Add a message to the history; a failure is logged, so that other messages are not affected.
 
-        While a past time is shown, playback needs every message, so none are thinned out. A failure is logged, so that
-        one message does not affect the others.
+        With `thins`, messages whose content does not change are thinned out. While a past time is shown, playback needs
+        every message.
         """
         from linkwright.bag.stillness import content_of
 
@@ -262,7 +262,7 @@ class LiveHistory:
                 subscription.enqueue(data, MessageInfo(stamp_ns, stamp_ns))
 
     def _review(self) -> None:
-        """Give new subscriptions the state at the displayed time."""
+        """Deliver the messages that are current at the displayed time to new subscriptions."""
         fresh = [subscription for subscription in self._subscriptions() if subscription not in self._known]
         if self.live or not fresh:
             return

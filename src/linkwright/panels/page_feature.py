@@ -1,11 +1,11 @@
-"""Page features, which handle pages' requests that are not about displays: their base class and their creation.
+"""The base class of page features, which handle most requests of pages, and their creation.
 
-Most are found through the entry points ``linkwright.page_features`` and are created with the viewer.
+Most features are found through the entry points ``linkwright.page_features`` and are created with the viewer.
 
-Others are created on demand: when a page asks for one, or when one of their topics is published. Each is declared by an
-`OnDemand`, which names its class, so that the module of the class is imported only then. Until then pages receive a
-default message instead. They are found through the entry points ``linkwright.page_features_on_demand``, whose values
-are modules with a tuple ``ON_DEMAND``.
+Others are created on demand: when a page sends one of their messages, or when one of their topics is published. Each is
+declared by an `OnDemand`, which names the class, so that the class's module is imported only then. Until then, pages
+receive a default message instead. The declarations are found through the entry points
+``linkwright.page_features_on_demand``, whose values are modules with a tuple ``ON_DEMAND``.
 """
 
 from __future__ import annotations
@@ -32,12 +32,12 @@ F = TypeVar("F", bound="PageFeature")
 
 
 class FeatureHost(Protocol):
-    """The viewer, as its features see it.
+    """The viewer as its page features see it.
 
     Attributes:
         context: the viewer's node, files and pages.
-        managers: the configurations that pages show: a shared one, and those of single pages.
-        live: the history of the last minutes; None if there is none.
+        managers: the managers of the configurations that pages show: a shared one, and those of single pages.
+        live: the history of the last minutes; None if it is not stored.
     """
 
     context: ViewerContext
@@ -45,29 +45,33 @@ class FeatureHost(Protocol):
     live: LiveHistory | None
 
     def add_feature(self, cls: type[F], receives: Iterable[str] = ()) -> F:
-        """Return the feature of a class, and create it if it does not exist yet.
+        """Return the feature of a class, which is created if it does not exist yet.
 
-        From then on it receives all events.
+        The feature receives all events from then on.
 
         Args:
             cls: the class of the feature.
-            receives: addresses of messages that it handles in addition to those that its class names.
+            receives: addresses of messages that the feature handles in addition to those that its class names.
         """
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
         """Return all features' messages about a configuration."""
 
     def opening_messages(self, manager: VisualizationManager) -> tuple[list[ServerMessage], list[Payload]]:
-        """Return the messages (frame table last) and binary frames for a page that opens a configuration."""
+        """Return the messages and binary frames for a page that opens a configuration.
+
+        The frame table is the last message.
+        """
 
 
 class PageFeature:
-    """Handles some of the messages of pages.
+    """The base class of features, each of which handles some of the messages of pages.
 
-    A feature must cost nothing while no page uses it: store subscriptions per page, and drop them in `page_closed`.
+    A feature must cost nothing while no page uses it: it subscribes for the pages that need it, and unsubscribes in
+    `page_closed`.
 
     Args:
-        viewer: the viewer that it belongs to.
+        viewer: the viewer of the feature.
     """
 
     RECEIVES: ClassVar[tuple[type, ...]] = ()
@@ -90,33 +94,33 @@ class PageFeature:
         """Start the feature; called when the viewer starts."""
 
     def opening(self) -> list[ServerMessage]:
-        """Return messages for a page that has just opened."""
+        """Return the messages that do not concern a configuration, for a page that has just opened."""
         return []
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
-        """Return messages about a configuration, for a new page, or for all pages when a file was opened."""
+        """Return the messages about a configuration, for a page that opens, or after a file was opened."""
         return []
 
     def edited(self, manager: VisualizationManager) -> None:
-        """Handle a change of undo, redo or the unsaved state of a configuration."""
+        """Handle a change of a configuration's undo history or of its unsaved state."""
 
     def manager_closed(self, manager: VisualizationManager) -> None:
-        """Drop the data of a manager that was closed."""
+        """Discard the data of a manager that was closed."""
 
     def robot_changed(self) -> None:
-        """Handle a display's change to another robot."""
+        """Handle a new robot of any display."""
 
     def diagnostics_changed(self, diagnostics: Sequence[Diagnostic]) -> None:
-        """Handle new findings on the description; the list is empty if there are none."""
+        """Handle new findings on the description, which replace the former ones; the list may be empty."""
 
     def recording_shown(self) -> None:
         """Switch to showing a recording: from now on, refuse requests to robots and simulations."""
 
     def receive(self, page: Page, message: Any) -> None:
-        """Handle a request, whose class is one of those that the feature receives."""
+        """Handle a message of a page, whose address is one of `receives`."""
 
     def page_closed(self, page: Page) -> None:
-        """Drop the data of a page that was closed."""
+        """Discard the data of a page that was closed."""
 
     def keep_unsaved(self) -> list[Diagnostic]:
         """Store pages' unsaved edits before the program ends, and return the findings about that."""
@@ -131,7 +135,7 @@ GROUP = "linkwright.page_features"
 
 
 def make_features(viewer: FeatureHost) -> list[PageFeature]:
-    """Create all features; log and skip those of other packages that fail."""
+    """Create all features that have an entry point; those that fail are logged and omitted."""
     made: list[PageFeature] = []
     for name, entry in extensions(GROUP).items():
         try:
@@ -156,12 +160,12 @@ class OnDemand:
     """The declaration of a feature that is created on demand.
 
     Attributes:
-        feature: its class, as ``module:class``.
-        receives: the classes of messages that it handles, as ``module:class``; the first such message imports the
-            module.
-        topics: the topics whose publishers make it necessary.
+        feature: the feature's class, as ``module:class``.
+        receives: the classes of messages that the feature handles, as ``module:class``; the first such message creates
+            the feature.
+        topics: the topics whose first publisher creates the feature.
         until: the message that pages receive while the feature does not exist.
-        refuses_recordings: whether it must exist while a recording is shown, to refuse requests.
+        refuses_recordings: whether the feature must exist while a recording is shown, to refuse requests.
     """
 
     feature: str
@@ -190,9 +194,9 @@ def _declared(logger: Logger) -> Iterator[OnDemand]:
 
 
 class OnDemandFeatures(PageFeature):
-    """Creates features on demand, and forwards the message that asked for one.
+    """Creates features on demand, and passes on the message for which a feature was created.
 
-    Each feature is created once and receives later messages directly.
+    Each feature is created once; later messages are passed to it directly.
     """
 
     def __init__(self, viewer: FeatureHost) -> None:
@@ -220,7 +224,7 @@ class OnDemandFeatures(PageFeature):
         return sorted((message for message in waiting if message is not None), key=tag_of)
 
     def receive(self, page: Page, message: Any) -> None:
-        """Create the feature that handles the message, and forward it."""
+        """Create the feature that handles the message, and pass the message on."""
         self._create(self._by_message[address_of(type(message))]).receive(page, message)
 
     def recording_shown(self) -> None:

@@ -1,4 +1,4 @@
-"""Recording from pages: one recording at a time, which all pages see, and saving the last minutes.
+"""Recording for pages: one recording at a time, shared by all pages, and saving the last minutes.
 
 Files are written to the program's working directory, under names that the program chooses; pages cannot choose them.
 """
@@ -46,7 +46,9 @@ _MOST_FILES = 20
 
 
 class RecordingFeature(PageFeature):
-    """Records topics for pages. It continues when its page is closed, and is finished properly when the program ends.
+    """Records topics for pages.
+
+    A recording continues when the page that started it is closed, and is completed when the program ends.
 
     Attributes:
         folder: the folder for recordings.
@@ -67,7 +69,7 @@ class RecordingFeature(PageFeature):
         self._loop = asyncio.get_running_loop()
 
     def recording_shown(self) -> None:
-        """Refuse to record from now on."""
+        """Refuse to record from now on, because a recording is shown."""
         self._possible = False
         self._publish()
 
@@ -76,7 +78,7 @@ class RecordingFeature(PageFeature):
         return [self._state()]
 
     def receive(self, page: Page, message: RecordTopics | StopRecording | SaveMinutes) -> None:
-        """Handle a request."""
+        """Start or stop recording, or save the last minutes."""
         if not self._possible:
             return
         match message:
@@ -89,7 +91,7 @@ class RecordingFeature(PageFeature):
                     self._attempt(partial(self._save, self.viewer.live, start, end))
 
     def close(self) -> None:
-        """End the recording."""
+        """Complete the current recording, if there is one."""
         self._possible = False
         self._end()
         if self._saving is not None:
@@ -191,7 +193,7 @@ class RecordingFeature(PageFeature):
     def _written(self, task: asyncio.Task[None]) -> None:
         self._saving = self._saved = None
         error = None if task.cancelled() else task.exception()
-        if error is not None:  # report even unexpected errors, or pages would wait forever
+        if error is not None:  # otherwise, pages would wait forever
             self.context.node.get_logger().error(f"The last minutes were not saved: {error!r}")
             self._refused([_finding(phrase("the last minutes were not saved: {reason}", reason=foreign(repr(error))))])
         self._publish()
@@ -208,7 +210,7 @@ class RecordingFeature(PageFeature):
         return path
 
     def _check_room(self, needed: int) -> None:
-        """Check that the disk has enough space left.
+        """Check that the disk has enough free space for a number of bytes.
 
         Raises:
             LinkwrightError: BAG110, there is not enough space.
@@ -227,7 +229,10 @@ class RecordingFeature(PageFeature):
             )
 
     def _free(self) -> int:
-        """Return the free bytes of the recordings' disk; infinite if unknown, since writing reports errors."""
+        """Return the number of free bytes on the disk of the recordings.
+
+        The result is ``sys.maxsize`` if it is unknown, because writing then reports a full disk.
+        """
         try:
             return shutil.disk_usage(self.folder).free
         except OSError:
@@ -286,7 +291,7 @@ class RecordingFeature(PageFeature):
 
 
 class _Running:
-    """A recording in progress. `clock` is the clock of the simulation, if there is one."""
+    """A recording in progress; `clock` is the simulation's clock, or None."""
 
     def __init__(
         self, node: Node, writer: BagWriter, recorder: Recorder, jumps: JumpHandle, clock: Clock | None
@@ -301,7 +306,7 @@ class _Running:
 
     @property
     def length(self) -> float:
-        """The seconds since the start."""
+        """The seconds since the start of the recording."""
         return time.monotonic() - self._began
 
     @property

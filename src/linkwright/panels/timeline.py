@@ -48,14 +48,14 @@ _CLOCK_PERIOD = 0.1
 
 @dataclass(slots=True)
 class _Since:
-    """The times from which elapsed times are counted, nanoseconds."""
+    """The times at which counting of elapsed times started, in nanoseconds."""
 
     ros: int
     wall: int
 
 
 class TimeFeature(PageFeature):
-    """The Time panel of pages.
+    """Sends pages the values of the Time panel, and applies the panel's settings.
 
     A clock that runs at the speed of the wall clock is sent once, and pages advance it themselves. Other clocks are
     sent while they change.
@@ -82,11 +82,11 @@ class TimeFeature(PageFeature):
         return [_state(manager)]
 
     def manager_closed(self, manager: VisualizationManager) -> None:
-        """Drop the start of the manager's elapsed times."""
+        """Discard the start of the manager's elapsed times."""
         self._since.pop(manager, None)
 
     def receive(self, page: Page, message: Any) -> None:
-        """Handle a request."""
+        """Apply settings of the Time panel, or start or stop sending clocks to the page."""
         manager = self.managers.of(page)
         if isinstance(message, SetTime):
             manager.set_time(paused=message.paused, mode=message.mode, source=message.source)
@@ -111,11 +111,9 @@ class TimeFeature(PageFeature):
         if self._jumps is not None:
             self._jumps.unregister()
 
-    # -----------------------------------------------------------------------------------------------------------
-
     def _begin(self, manager: VisualizationManager) -> _Since:
         known = self._since.get(manager)
-        if known is None or known.ros == 0:  # simulated time is 0 until it is first published; start counting then
+        if known is None or known.ros == 0:  # simulated time is 0 until its first message
             now = manager.time.now_ns()
             known = self._since[manager] = _Since(now, time.time_ns() if known is None else known.wall)
         return known
@@ -135,7 +133,7 @@ class TimeFeature(PageFeature):
             for manager in self.managers.all():
                 self._reset(manager)
 
-        # Messages of /clock may set the clock in any thread.
+        # Messages of /clock may change the time in any thread.
         self._loop.call_soon_threadsafe(reset)
 
     def _publish_all(self) -> None:
@@ -144,7 +142,7 @@ class TimeFeature(PageFeature):
         self._tick()
 
     def _tick(self) -> None:
-        """Send the clocks to each page that watches them and cannot advance them itself."""
+        """Send the clocks that pages cannot advance themselves to the pages that watch them."""
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None
@@ -189,12 +187,13 @@ _CAUGHT_UP_NS = 100_000_000
 
 
 class TimelineFeature(PageFeature):
-    """Shows pages the position in a recording, and controls playback for them.
+    """Shows pages the position in a recording or in the last minutes, and controls playback for them.
 
-    Without a recording or a live history it does nothing. A recording begins to play when the first page opens.
+    Without a recording or a live history, the feature does nothing. A recording starts to play when the first page
+    opens.
 
     Attributes:
-        jumped: functions that are called when the displayed time jumps.
+        jumped: callbacks for jumps of the displayed time.
     """
 
     RECEIVES: ClassVar[tuple[type, ...]] = (Play, SeekTime, StepTime, SetPlayback, GoLive)
@@ -215,7 +214,7 @@ class TimelineFeature(PageFeature):
         self._loop = asyncio.get_running_loop()
 
     def attach(self, playback: Playback, bag: BagReader) -> None:
-        """Show pages a recording; call `failed` if it cannot be read."""
+        """Show a recording to pages; the caller reports a read error with `failed`."""
         from linkwright.bag.publishing import missing_type_findings
 
         counts = bag.counts(_PARTS)
@@ -257,7 +256,7 @@ class TimelineFeature(PageFeature):
             self.context.report(diagnostic)
 
     def opening(self) -> list[ServerMessage]:
-        """Return the recording and the position in it."""
+        """Return the extent of the recording or the history, and the current position."""
         playback = self._recorded
         if self._live is not None:
             extent = self._extent(self._live)
@@ -272,7 +271,7 @@ class TimelineFeature(PageFeature):
         return [self._timeline, self._playhead(playback)]
 
     def receive(self, page: Page, message: Play | SeekTime | StepTime | SetPlayback | GoLive) -> None:
-        """Handle a request."""
+        """Handle a request to play, pause, move to a time, or return to the present."""
         from linkwright.bag.playback import FASTEST, SLOWEST
 
         playback = self._recorded if self._live is None else self._live.playback
@@ -290,8 +289,8 @@ class TimelineFeature(PageFeature):
                 playback.play() if playing else playback.pause()
             case SeekTime(position) if isfinite(position):
                 start = playback.start_ns
-                # Compute relative to the start: a float of seconds since the epoch is inexact by a tenth of a
-                # microsecond.
+                # Compute relative to the start: a float of seconds since the epoch is only precise to a tenth of a
+                # microsecond or so.
                 playback.seek(start + round((position - start / NANOSECONDS_PER_SECOND) * NANOSECONDS_PER_SECOND))
             case StepTime(forward, topic):
                 playback.step(forward, topic)
@@ -300,7 +299,7 @@ class TimelineFeature(PageFeature):
                 playback.set_loop(loop)
 
     def before(self, topics: Collection[str], seconds: float, most_bytes: int) -> list[Recorded]:
-        """Return the known messages of some topics in the seconds before the displayed time.
+        """Return the stored messages of some topics in the seconds before the displayed time.
 
         Args:
             topics: the topics; the history of the last minutes only has those that the viewer is subscribed to.
@@ -325,10 +324,8 @@ class TimelineFeature(PageFeature):
             self.context.graph_changes.unwatch(self._recorded.review)
             self._recorded.close()
 
-    # -----------------------------------------------------------------------------------------------------------
-
     def _reset(self) -> None:
-        """Drop the displayed and the queued messages, which belong to another time."""
+        """Discard the displayed and the queued messages, because the displayed time has jumped."""
         for subscription in self.context.node.subscriptions:
             subscription.discard()
         for manager in self.managers.all():

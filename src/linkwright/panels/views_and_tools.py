@@ -43,7 +43,10 @@ if TYPE_CHECKING:
 
 
 class ViewsFeature(PageFeature):
-    """The cameras of pages, which start with the file's view. Saving the file saves the view that changed last."""
+    """The views of pages, which start with the file's view.
+
+    The file receives the view that a page changed last.
+    """
 
     RECEIVES: ClassVar[tuple[type, ...]] = (ViewChanged, RobotMeasured, SaveView, ChangeSavedView, RemoveSavedView)
 
@@ -52,7 +55,7 @@ class ViewsFeature(PageFeature):
         self._classes = ViewClasses(view_classes())
 
     def opening(self) -> list[ServerMessage]:
-        """Return the available view types."""
+        """Return the view classes and their properties."""
         return [self._classes]
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
@@ -60,7 +63,7 @@ class ViewsFeature(PageFeature):
         return [ViewState(manager.view, manager.opened, manager.shows_whole_robot), self._saved(manager)]
 
     def receive(self, page: Page, message: Any) -> None:
-        """Handle views that pages send; invalid ones are refused."""
+        """Handle a changed view of a page, or an edit of the saved views; invalid views are refused."""
         manager = self.managers.of(page)
         views = manager.config.views
         try:
@@ -106,9 +109,10 @@ class _Shelf:
 
 
 class ToolsFeature(PageFeature):
-    """The tools of a configuration, for the pages that show it.
+    """The tools of a configuration for the pages that show it.
 
-    Publishers are created at the start, as in RViz, so that subscribers are discovered before the first message.
+    Publishers are created when the viewer starts, as in RViz, so that subscribers discover them before the first
+    message.
     """
 
     RECEIVES: ClassVar[tuple[type, ...]] = (SetToolProperty, AddTool, RemoveTool, PoseChosen, PointChosen)
@@ -118,12 +122,12 @@ class ToolsFeature(PageFeature):
         self._shelves: dict[VisualizationManager, _Shelf] = {}
 
     def start(self) -> None:
-        """Create the publishers of the tools."""
+        """Create the publishers of the shared configuration's tools."""
         for manager in self.managers.all():
             self._shelf(manager)
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
-        """Return the tools."""
+        """Return the tools of the configuration."""
         return [_tools_message(self._shelf(manager))]
 
     def manager_closed(self, manager: VisualizationManager) -> None:
@@ -133,7 +137,7 @@ class ToolsFeature(PageFeature):
             self._clear(shelf)
 
     def receive(self, page: Page, message: Any) -> None:
-        """Handle a request; requests for removed tools are ignored."""
+        """Change or use a tool; messages for removed tools are ignored."""
         manager = self.managers.of(page)
         shelf = self._shelf(manager)
         if isinstance(message, SetToolProperty):
@@ -156,7 +160,7 @@ class ToolsFeature(PageFeature):
             self.manager_closed(manager)
 
     def _shelf(self, manager: VisualizationManager) -> _Shelf:
-        """Return the tools of a manager, with new publishers if the configuration was replaced."""
+        """Return the tools of a manager; they are created again if the configuration was replaced."""
         shelf = self._shelves.get(manager)
         if shelf is None or shelf.config is not manager.config.tools:
             if shelf is not None:
@@ -213,13 +217,13 @@ class ToolsFeature(PageFeature):
         manager.edited()
         manager.publish(ToolPropertyChanged(message.id, value))
 
-    # --- what is published ---------------------------------------------------------------------------------------
+    # --- publishers and messages ---------------------------------------------------------------------------------
 
     def _announce(self, shelf: _Shelf, entry: ToolEntry) -> None:
-        """Recreate a tool's publisher; a tool without a topic has none."""
+        """Create a tool's publisher or goal sender for its current topic, and destroy the former one."""
         kind = TOOL_KINDS.get(entry.cls)
         if kind is not None and kind.action is not None:
-            from linkwright.panels.goals import GoalSender  # imported here because few configurations need it
+            from linkwright.panels.goals import GoalSender  # few configurations use it
 
             shelf.goals[entry.id] = GoalSender(self.context.node, *kind.action)
         if kind is None or kind.publishes is None:
@@ -243,7 +247,7 @@ class ToolsFeature(PageFeature):
     def _find(
         self, manager: VisualizationManager, identity: str, classes: Collection[str]
     ) -> tuple[ToolEntry, Publisher[Any]] | None:
-        """Return a tool and its publisher; None if it has none or is of another class."""
+        """Return a tool and its publisher, or None if the tool has no publisher or another class."""
         shelf = self._shelves[manager]
         entry, publisher = shelf.config.find(identity), shelf.publishers.get(identity)
         return None if entry is None or publisher is None or entry.cls not in classes else (entry, publisher)
@@ -289,9 +293,9 @@ class ToolsFeature(PageFeature):
         publisher.publish(message)
 
     def _stamped(self, manager: VisualizationManager, kind: str | None, pose: Transform) -> tuple[Any, list[float]]:
-        """Return a stamped message with an empty pose, and the given pose in the message's frame.
+        """Return a message with a header, and the pose in the frame of that header.
 
-        The given pose is in the Fixed Frame.
+        The given pose is in the Fixed Frame. The caller writes the returned pose to the message.
         """
         assert kind is not None
         message = get_message(kind)()
@@ -301,7 +305,7 @@ class ToolsFeature(PageFeature):
 
 
 def _fill(pose: Any, place: list[float]) -> Any:
-    """Write position and quaternion into a geometry_msgs/msg/Pose, and return it."""
+    """Write a position and a quaternion to a geometry_msgs/msg/Pose, and return the message."""
     pose.position.x, pose.position.y, pose.position.z = place[:3]
     pose.orientation.x, pose.orientation.y, pose.orientation.z, pose.orientation.w = place[3:]
     return pose

@@ -1,4 +1,4 @@
-"""RViz: configuration files, displays, views, and the conversion of messages to content."""
+"""RViz configuration files, displays and views, and the conversion of messages to what pages draw."""
 
 from typing import TYPE_CHECKING
 

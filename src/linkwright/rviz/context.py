@@ -1,4 +1,4 @@
-"""A viewer's context: node, files, pages, graph changes, and topics published by other nodes."""
+"""The objects that displays share: node, files, pages, graph changes, and published topics."""
 
 from __future__ import annotations
 
@@ -21,9 +21,10 @@ from linkwright.rviz.frames.history import FrameHistory
 
 
 class PublishedTopics:
-    """The topics that the nodes of a graph publish, without those of the viewer's own node.
+    """The topics that the nodes of a graph publish, except those of the viewer's own node.
 
-    Displays without messages check every second why there are none, and a configuration has hundreds of them.
+    The lookup is cached: displays without messages check every second why there are none, and a configuration can have
+    hundreds of displays.
 
     Args:
         node: the viewer's node.
@@ -37,19 +38,19 @@ class PublishedTopics:
         self._topics: dict[str, list[str]] = {}
 
     def publishers(self, topic: str) -> list[tuple[str, str]]:
-        """Return the node and type of each publisher of a topic.
+        """Return the node name and the message type of each publisher of a topic.
 
         The topic's name is resolved in the viewer's node.
 
         Raises:
-            InvalidTopicNameError: the name is not valid.
+            InvalidTopicNameError: the topic's name is not valid.
         """
         name = self._node.resolve_topic_name(topic)
         self._look()
         return self._publishers.get(name, [])
 
     def of_type(self, message: str) -> list[str]:
-        """Return the topics that carry messages of a type, sorted."""
+        """Return the names of the topics that are published with a message type, sorted."""
         self._look()
         return self._topics.get(message, [])
 
@@ -86,10 +87,10 @@ _QUIET = 0.1
 
 
 class GraphChanges:
-    """Calls callbacks when the graph changes; costs nothing while there are no callbacks.
+    """Calls callbacks when the graph changes; does not watch the graph while there are no callbacks.
 
     Args:
-        graph: the graph to listen to; its changes may occur in any thread.
+        graph: the graph to watch; it may report changes from any thread.
     """
 
     def __init__(self, graph: GraphQueries) -> None:
@@ -99,7 +100,7 @@ class GraphChanges:
         self._due: asyncio.TimerHandle | None = None
 
     def watch(self, changed: Callable[[], None]) -> None:
-        """Register a callback for changes; it is called on the event loop."""
+        """Register a callback for changes, which is called on the event loop."""
         if not self._listeners:
             self._graph.watch(self._changed)
         self._listeners[changed] = None
@@ -114,7 +115,7 @@ class GraphChanges:
                 self._due = None
 
     def _changed(self) -> None:
-        with suppress(RuntimeError):  # the loop is closed, so there are no listeners any more
+        with suppress(RuntimeError):  # after the loop was closed, nothing needs the change
             self._loop.call_soon_threadsafe(self._wait)
 
     def _wait(self) -> None:
@@ -129,10 +130,10 @@ class GraphChanges:
 
 
 class HeldTime:
-    """Whether the component that shows the past holds the viewer's clock at a past time.
+    """Holds the viewer's clock at a past time while the history is shown.
 
     Attributes:
-        switching: whether the clock is being held or released, in which case displays must not reset.
+        switching: whether the clock is just being held or released, in which case displays must not reset.
     """
 
     def __init__(self) -> None:
@@ -140,7 +141,10 @@ class HeldTime:
         self.switching = False
 
     def show(self, clock: ROSClock, now_ns: int) -> bool:
-        """Hold a clock at a time in ns since the epoch; return False if it shows simulated time."""
+        """Hold a clock at a time in ns since the epoch.
+
+        Return False, without holding the clock, if the clock follows simulated time.
+        """
         if clock.ros_time_is_active and not self._held:
             return False
         clock.override(now_ns)
@@ -149,7 +153,7 @@ class HeldTime:
         return True
 
     def release(self, clock: ROSClock) -> None:
-        """Make the clock show the current time again."""
+        """Make the clock return the current time again, if it was held."""
         if self._held:
             self._held = False
             self._switch(clock, held=False)
@@ -164,19 +168,19 @@ class HeldTime:
 
 @dataclass(frozen=True, slots=True)
 class ViewerContext:
-    """The node, the files and the pages of a viewer.
+    """The node, the files and the pages of a viewer, shared by its displays.
 
     Attributes:
         node: the viewer's node, for subscriptions and logging.
         library: reads descriptions, each of them once per process.
         finder: finds packages.
-        pages: every open page.
-        transforms: the history of transforms, used to place messages at the time in their headers.
+        pages: the group of all open pages.
+        transforms: the history of transforms, from which poses at the time of a message are computed.
         graph_changes: notifies callbacks when nodes or endpoints appear or disappear.
         published: the topics that other nodes publish.
         meshes: the folders that pages may read from.
         downloads: files created for a page, each of which can be fetched once.
-        held_time: whether the viewer's clock shows the past.
+        held_time: holds the viewer's clock while the past is shown.
         display_ids: an iterator of IDs that no display of the viewer has used.
         folder: the working directory of the program, for files that pages create.
     """
@@ -195,10 +199,10 @@ class ViewerContext:
     folder: Path = field(default_factory=Path.cwd)
 
     def report(self, diagnostic: Diagnostic) -> None:
-        """Report a finding in the terminal."""
+        """Log a finding in the terminal, as an error or a warning."""
         where = f"{diagnostic.span}: " if diagnostic.span else ""
         logger = self.node.get_logger()
-        if diagnostic.severity is Severity.ERROR:  # two calls, because a logger identifies calls by their lines
+        if diagnostic.severity is Severity.ERROR:  # two calls, because a logger identifies calls by line
             logger.error(where + diagnostic.message)
         else:
             logger.warning(where + diagnostic.message)

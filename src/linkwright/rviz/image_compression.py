@@ -24,16 +24,17 @@ _ROOMY = 2.5
 class ImageCompressor:
     """Compresses a display's images to WebP.
 
-    It remembers the last suitable compression step for each size.
+    The last suitable scale and quality for each size are stored, and are tried first for the next image.
     """
 
     def __init__(self) -> None:
         self._steps: dict[int, int] = {}
 
     def compressed(self, frame: ImageFrame, size: int) -> ImageFrame:
-        """Return the image as a WebP file of at most `size` bytes, or the smallest possible file.
+        """Return the image as a WebP file of at most `size` bytes, or as small as a few attempts allow.
 
-        An image that cannot be read is returned unchanged, because the page reports the error.
+        An image that cannot be read is returned unchanged, because the page reports the error. A file that is already
+        smaller than the result is also returned unchanged.
         """
         try:
             return self._compressed(frame, size)

@@ -1,4 +1,4 @@
-"""The lights of a world for the page."""
+"""Conversion of the lights of a world to the page's form."""
 
 from __future__ import annotations
 
@@ -14,9 +14,10 @@ _DOWN = (0.0, 0.0, -1.0)
 
 
 def lights_of(world: World) -> list[LightScene]:
-    """Return the lights of a world and its links that are on.
+    """Return the lights of a world and of its links, omitting those that are off.
 
-    A light of the world without a known pose is left out. If the pose of a link is not known, all lights of links are.
+    A light of the world is omitted if its pose is unknown. If the pose of any link is unknown, the lights of all links
+    are omitted.
 
     Args:
         world: the world, with its includes resolved.

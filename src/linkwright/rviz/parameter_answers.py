@@ -15,14 +15,14 @@ _LOOK_EVERY = 0.05
 
 
 class NoAnswerError(Exception):
-    """Raised when a node did not answer in time; the text names the request."""
+    """Raised when a node did not respond in time; the message names the request."""
 
 
 async def services_ready(client: AsyncParameterClient) -> None:
     """Wait until a node's parameter services are available.
 
     Raises:
-        NoAnswerError: they do not appear in time.
+        NoAnswerError: the services are not available in time.
     """
     loop = asyncio.get_running_loop()
     deadline = loop.time() + _PATIENCE
@@ -33,7 +33,7 @@ async def services_ready(client: AsyncParameterClient) -> None:
 
 
 async def answer(client: AsyncParameterClient, future: Awaitable[Any]) -> Any:
-    """Return the response to a request that a method of a client has sent.
+    """Return the response to a request, given the future that a method of the client returned.
 
     Raises:
         NoAnswerError: there was no response in time.

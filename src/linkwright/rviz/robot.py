@@ -1,6 +1,7 @@
 """A robot for the page: the source of its description, its shapes and its size.
 
-A description is received on a topic or read from a file. Pages draw links with their shapes, colours, files and poses.
+A description is received on a topic or read from a file. It is converted to links with shapes, colours, files and
+poses, which pages draw.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ _APART = 1e-6
 
 
 def size_of(robot: Robot) -> ModelSize | None:
-    """Return the size of a robot whose joints are at zero, or None for one that is a single point.
+    """Return the size of a robot whose joints are at zero, or None if it has no extent.
 
     The size is computed from the frames of the links, and from visuals and collisions with simple shapes. A page that
     has read the meshes knows the exact size, but axes are drawn before that.
@@ -65,7 +66,7 @@ def size_of(robot: Robot) -> ModelSize | None:
 
 
 def _simple_shapes(robot: Robot, link: str) -> Iterator[Bounds]:
-    """Yield the bounding boxes of the simple shapes of a link, in the link's frame."""
+    """Yield the bounding boxes of a link's shapes other than meshes, in the link's frame."""
     parts: tuple[Visual | Collision, ...] = (*robot.links[link].visuals, *robot.links[link].collisions)
     for part in parts:
         if not isinstance(part.geometry, Mesh):
@@ -104,14 +105,14 @@ DESCRIPTION_SPECS = (
 
 
 class DescriptionSource:
-    """Follows the source of a robot description that a display's properties name.
+    """The source of a robot description that a display's properties select: a topic or a file.
 
     Args:
-        context: the viewer's context; its library receives the files that were read, which gives the robot source
+        context: the viewer's context. Its library stores descriptions that were read from files, with their source
             positions.
         properties: the display's properties, with `DESCRIPTION_SPECS`.
-        on_text: called with each description.
-        on_refusal: called with the findings if there is no description.
+        on_text: called with the text of each description.
+        on_refusal: called with the findings if a file cannot be read.
     """
 
     def __init__(
@@ -132,14 +133,17 @@ class DescriptionSource:
         """The GID of the publisher of the last description; None before, and for files."""
 
     def follow(self) -> Phrase | None:
-        """Switch to the source that is named now, and return RViz's text for a failure, or None."""
+        """Subscribe to the topic or start reading the file that the properties select.
+
+        Return RViz's error text if that fails, or None.
+        """
         self.close()
         if self._properties.text(SOURCE) == "File":
             return self._read_file(self._properties.text(FILE).strip())
         return self._subscribe(self._properties.text(TOPIC).strip())
 
     def close(self) -> None:
-        """Unsubscribe."""
+        """Unsubscribe, and cancel reading a file."""
         for subscription in self._subscriptions:
             with suppress(ValueError):  # the node may already have been destroyed
                 self._context.node.destroy_subscription(subscription)
@@ -154,7 +158,7 @@ class DescriptionSource:
         if not topic:
             return phrase("Error subscribing: Empty topic name")
         asked = qos_of(self._properties, TOPIC)
-        # Try transient local first, then the file's setting, for publishers that do not offer transient local.
+        # The file's durability is also used, for publishers that do not offer transient local.
         profiles = [qos_of(self._properties, TOPIC, lasting=True)]
         if asked.durability is not DurabilityPolicy.TRANSIENT_LOCAL:
             profiles.append(asked)
@@ -168,7 +172,10 @@ class DescriptionSource:
         return None
 
     def publishers(self) -> dict[bytes, str]:
-        """Return the current publishers of received descriptions, by GID: node, and machine if known."""
+        """Return the publishers of the descriptions received so far that still exist.
+
+        The keys are GIDs; a value consists of the node's name and, if known, its host.
+        """
         if not self._heard:
             return {}
         gids = set(map(self.current, self._heard))
@@ -179,9 +186,9 @@ class DescriptionSource:
         }
 
     def current(self, gid: bytes) -> bytes:
-        """Return the current GID of a description's publisher.
+        """Return the current GID of a publisher that had a GID before.
 
-        It changes when this process joins a network.
+        The GIDs of this process's publishers change when the process joins a network.
         """
         known = self._heard.get(gid)
         if known is None or not known.local:
@@ -229,7 +236,7 @@ def link_inertia(inertial: Inertial | None) -> LinkInertia | None:
     """Return a link's mass, centre of mass and equivalent box; None if they are not computable."""
     if inertial is None:
         return None
-    from linkwright.inertia.inertial import from_inertial  # imported here because few pages ask for inertias
+    from linkwright.inertia.inertial import from_inertial  # few pages request inertias
 
     if not inertial.is_computable:
         return None
@@ -246,9 +253,9 @@ def link_inertia(inertial: Inertial | None) -> LinkInertia | None:
 
 
 def place_of(element: Element | None) -> Place | None:
-    """Return where an element is written, or None if it was generated by a program.
+    """Return the source position of an element, or None if the element was generated by a program.
 
-    The place includes macro calls and includes.
+    The position includes the macro calls and includes that led to the element.
     """
     if element is None:
         return None
@@ -264,23 +271,26 @@ def place_of(element: Element | None) -> Place | None:
 
 
 def folder_of(element: Element | None) -> Path | None:
-    """Return the folder of an element's file, or None; relative paths start there."""
+    """Return the folder of the file that contains an element, or None if there is no file.
+
+    Relative paths in the element are relative to this folder.
+    """
     if element is None or element.source is None or element.source.name.startswith("<"):
         return None
     return Path(element.source.name).parent
 
 
 def frame_of(link: str, prefix: str) -> str:
-    """Return the tf frame of a link with a display's TF Prefix; RViz joins them with a slash."""
+    """Return the tf frame of a link: the link's name, preceded by the TF Prefix and a slash if set."""
     return f"{prefix}/{link}" if prefix else link
 
 
 def has_visuals(robot: Robot, finder: PackageFinder) -> bool:
-    """Return whether a robot has a drawable visual, which makes it visible without its frames.
+    """Return whether a robot has a visual that can be drawn, so that it is visible without its axes.
 
     Args:
         robot: the robot's description.
-        finder: finds the files of its meshes.
+        finder: finds the files of the robot's meshes.
     """
     return any(link.visuals for link in SceneBuilder(MeshIndex(finder)).links(robot, ""))
 
@@ -288,12 +298,12 @@ def has_visuals(robot: Robot, finder: PackageFinder) -> bool:
 class SceneBuilder:
     """Converts a robot to the page's form.
 
-    A visual has the colour of its own material, also if a link has several visuals, which RViz handles incorrectly. A
+    A visual has the colour of its own material, even if a link has several visuals, which RViz handles incorrectly. A
     collision has the colour of the link's first visual, as in RViz.
 
     Attributes:
         index: the files found during the conversion, for `MeshFolders`.
-        problems: the problems with files by link, in RViz's words.
+        problems: the problems with files by link, with RViz's texts.
     """
 
     def __init__(self, index: MeshIndex) -> None:
@@ -301,7 +311,7 @@ class SceneBuilder:
         self.problems: dict[str, list[Phrase]] = {}
 
     def links(self, robot: Robot, prefix: str) -> list[LinkScene]:
-        """Return the links in file order, with frames named by the display's TF Prefix."""
+        """Return the links in file order, with frame names that include the display's TF Prefix."""
         parents = {joint.child: joint.name for joint in robot.joints.values()}
         return [self._link(link, prefix, parents.get(link.name)) for link in robot.links.values()]
 

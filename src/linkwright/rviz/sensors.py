@@ -1,4 +1,4 @@
-"""The lidars and cameras of a world for the page."""
+"""Conversion of the lidars and cameras of a world to the page's form."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ _ENDLESS = 30.0
 
 @dataclass(frozen=True, slots=True)
 class ShownLidar:
-    """A lidar in the form that pages draw.
+    """A lidar in the page's form, and how its measurements are reduced for drawing.
 
     Attributes:
         scene: the description of the lidar for pages.
-        measured: the number of rows and columns that the lidar measures.
-        every: the step between drawn rows and the step between drawn columns.
+        measured: the number of rows and of columns that the lidar measures.
+        every: the step between drawn rows, and between drawn columns.
     """
 
     scene: LidarScene
@@ -39,7 +39,9 @@ class ShownLidar:
 
 
 def sensors_of(world: World) -> tuple[list[ShownLidar], list[CameraScene]]:
-    """Return the lidars and the cameras of a world in file order; both lists are empty if one cannot be placed.
+    """Return the lidars and the cameras of a world, in file order.
+
+    Both lists are empty if the pose of any link or sensor is unknown.
 
     Args:
         world: the world, with its includes resolved.

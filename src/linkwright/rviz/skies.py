@@ -1,4 +1,4 @@
-"""Sky and fog of a world for the page."""
+"""Conversion of the sky and the fog of a world to the page's form."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def daylight(sky: Sky | None) -> float | None:
 
 
 def fog_of(fog: Fog | None) -> FogScene | None:
-    """Return the fog for pages, or None if there is no fog."""
+    """Return the fog in the page's form, or None if there is no fog."""
     if fog is None or fog.type.strip() in ("", "none") or not all(map(isfinite, (fog.start, fog.end, fog.density))):
         return None
     density = None if fog.type.strip() == "linear" else max(fog.density, 0.0)

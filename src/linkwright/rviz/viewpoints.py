@@ -16,10 +16,11 @@ _POSE_NUMBERS = 6
 
 
 def camera_of(world: World) -> Transform | None:
-    """Return the pose of the camera in a world's file, in the world frame; it looks along its x axis.
+    """Return the pose of the camera that a world's file sets, in the world frame, or None.
 
-    Gazebo classic reads ``<gui><camera><pose>``; gz reads the ``<camera_pose>`` of the GUI plugin that renders. None if
-    the world has neither, or the pose does not have six numbers.
+    The camera looks along its x axis. Gazebo classic reads ``<gui><camera><pose>``; gz reads the ``<camera_pose>`` of
+    the GUI plugin that renders. The result is None if the world has neither, or if the pose does not have six
+    numbers.
     """
     gui = world.element.first("gui") if world.element is not None else None
     if gui is None:
@@ -30,9 +31,9 @@ def camera_of(world: World) -> Transform | None:
 
 
 def robots_of(world: World) -> list[str]:
-    """Return the names of the models that are robots.
+    """Return the names of the models that count as robots.
 
-    They are not static, and have sensors, plugins or several moving joints.
+    Such models are not static, and have sensors, plugins or several moving joints.
     """
     return [model.name for model in world.models if not model.static and _is_robot(model)]
 

@@ -1,4 +1,4 @@
-"""A world for the page: the shapes of the links of all its models, and their initial poses."""
+"""Conversion of a world to the page's form: the shapes of all links, and their initial poses."""
 
 from __future__ import annotations
 
@@ -117,7 +117,7 @@ class _Builder:
         return shape if shape.size else None
 
     def _form(self, link: str, shape: Shape, geometry: SdfShape) -> Transform | None:
-        """Set the kind and size of a shape; return its pose in the geometry's frame or None.
+        """Set the kind and the size of a shape, and return the shape's pose in the geometry's frame.
 
         None means the identity.
         """
@@ -174,9 +174,9 @@ class _Builder:
             shape.texture = self._located(link, texture.diffuse, IMAGE_TYPES)
 
     def _heights(self, link: str, uri: str) -> NDArray[np.float32] | None:
-        """Return the heights of a heightmap, read as in the simulation.
+        """Return the heights of a heightmap, read as in the simulation, or None if it cannot be read.
 
-        Browsers read neither TIFF nor 16-bit grey.
+        The image is decoded here, because browsers decode neither TIFF nor 16-bit grey.
         """
         if self._located(link, uri, IMAGE_TYPES) is None:
             return None
@@ -219,19 +219,19 @@ class _Builder:
 
 
 def _maps(workflow: Workflow) -> tuple[str, ...]:
-    """Return the images of a surface except the colour image, in the order of `Surface`."""
+    """Return the image files of a material except the colour image, in the order of `Surface`."""
     reflecting = (workflow.normal_map, workflow.roughness_map, workflow.metalness_map)
     return (*reflecting, workflow.emissive_map, workflow.ambient_occlusion_map)
 
 
 def _reflects(workflow: Workflow) -> bool:
-    """Return whether a material specifies how it reflects light, and not only an image."""
+    """Return whether a material sets more than a colour image: other images, roughness or metalness."""
     usual = Workflow()
     return any(_maps(workflow)) or (workflow.roughness, workflow.metalness) != (usual.roughness, usual.metalness)
 
 
 def _look(material: Material) -> tuple[Sequence[float] | None, str]:
-    """Return the colour and image of a material; None and an empty string if it sets none.
+    """Return the colour of a material or None, and its colour image or an empty string.
 
     Material scripts were read with the world. For a model from text, only Gazebo's own material names are known here.
     """

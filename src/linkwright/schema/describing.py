@@ -1,4 +1,4 @@
-"""Descriptions of rules in words, for hover texts and documentation."""
+"""Descriptions of schema rules in words, for hover texts and documentation."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from linkwright.schema.rules import AttributeRule, ElementRule, Version
 
 
 def describe_element(rule: ElementRule) -> Phrase:
-    """Describe an element in Markdown: its meaning, its attributes and its children."""
+    """Return a description of an element in Markdown: its meaning, attributes and children."""
     tag = joined([f"`<{rule.tag}>`", *_since(rule.since)])
     head = phrase("{name}: {meaning}", name=tag, meaning=term(rule.meaning))
     lines = [phrase("- {line}", line=describe_attribute(attribute)) for attribute in rule.attributes]
@@ -30,7 +30,7 @@ def describe_element(rule: ElementRule) -> Phrase:
 
 
 def describe_attribute(attribute: AttributeRule) -> Phrase:
-    """Describe an attribute in one line of Markdown: meaning, type, unit, default, versions."""
+    """Return a line of Markdown about an attribute: meaning, type, unit, default, versions."""
     return phrase(
         "{name}: {meaning} ({facts})",
         name=f"`{attribute.name}`",
@@ -40,7 +40,7 @@ def describe_attribute(attribute: AttributeRule) -> Phrase:
 
 
 def _describe_value(rule: ElementRule) -> Phrase:
-    """Describe an element with a single value in one line of Markdown, like an attribute."""
+    """Return a line of Markdown about an element with a single value, like that of an attribute."""
     assert rule.text is not None
     facts = _facts(rule.text)
     if rule.many:

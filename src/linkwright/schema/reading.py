@@ -1,10 +1,10 @@
 """Reading of elements by their rules.
 
-The functions for it are generated and compiled once for each version.
+The functions that read elements are generated and compiled once for each version of a language.
 
-An element that has only attributes is read once for each set of values: ``<origin xyz="0 0 0"/>`` occurs hundreds of
-times in a robot. Readers are functions generated from the rules, as Jinja generates them from templates, because loops
-over tables take half as long again as code written by hand.
+An element that has only attributes is read once for each set of values, because ``<origin xyz="0 0 0"/>`` occurs
+hundreds of times in a robot. Readers are generated from the rules, as Jinja generates functions from templates, because
+loops over tables take 1.5 times as long as handwritten code.
 
 Except for the names of the values, the source generated for ``<mass>`` of URDF is:
 
@@ -17,7 +17,7 @@ Except for the names of the values, the source generated for ``<mass>`` of URDF 
             return explain(element, owner, report)
         ...
 
-and for ``<inertial>``, which has children, it begins as follows:
+The source for ``<inertial>``, which has children, begins as follows:
 
     def read(element, owner, report):
         given = element.attributes
@@ -53,7 +53,7 @@ _REMEMBERED = 4096
 def is_remembered(rule: ElementRule) -> bool:
     """Return whether elements of a rule are cached by their attributes.
 
-    The elements must have only attributes, not all of which are plain texts.
+    Such elements have only attributes, and at least one of these is not a plain text.
     """
     only_attributes = not (rule.children or rule.nests or rule.located or rule.text is not None)
     return only_attributes and any(attribute.type.read is not str for attribute in rule.attributes)
@@ -62,7 +62,8 @@ def is_remembered(rule: ElementRule) -> bool:
 def flat_source(rule: ElementRule, version: Version) -> str:
     """Return the source of ``read(element, owner, report)`` for elements without children.
 
-    An element with an error is passed to ``explain``; a result without findings is stored in ``memory``.
+    The generated function passes an element with an error to ``explain``, and stores a result without findings in
+    ``memory``.
     """
     lines = ["given = element.attributes", "before = report.count"]
     values = []
@@ -86,7 +87,7 @@ def flat_source(rule: ElementRule, version: Version) -> str:
 
 
 def nested_source(rule: ElementRule, version: Version) -> str:
-    """Return the source of ``read(element, owner, report)`` for elements with children in files of a version."""
+    """Return the source of ``read(element, owner, report)`` for elements with children."""
     attributes = [(f"attribute{index}", attribute) for index, attribute in enumerate(rule.attributes)]
     children = [(f"child{index}", child) for index, child in enumerate(rule.children) if child.since <= version]
     lines = ["given = element.attributes"]
@@ -147,7 +148,7 @@ def _child(name: str, child: ElementRule) -> Iterator[str]:
 
 
 def _unreadable(rule: ElementRule, attributes: list[str], children: list[tuple[str, ElementRule]]) -> Iterator[str]:
-    """Yield the generated code for an element with unreadable parts."""
+    """Yield the lines of generated code that handle unreadable parts of an element."""
     singles = [*attributes, *(name for name, child in children if not child.many)]
     if rule.keeps:
         for name in singles:
@@ -162,7 +163,7 @@ def _unreadable(rule: ElementRule, attributes: list[str], children: list[tuple[s
 
 
 def _fields(name: str, child: ElementRule) -> Iterator[str]:
-    """Yield the generated arguments for a child."""
+    """Yield the keyword arguments in the generated code for a child."""
     if child.is_inline:
         for place, attribute in enumerate(child.values):
             yield f"{attribute.target}=({name}_absent if {name} is None else {name})[{place}]"
@@ -177,9 +178,9 @@ UNREADABLE: Final = type("Unreadable", (), {"__repr__": lambda _: "UNREADABLE"})
 
 
 class Report(Protocol):
-    """Receives the findings of a reader, and formulates them for one XML language.
+    """The receiver of a reader's findings, which formulates messages for one XML language.
 
-    `owner` is the element by which messages describe an element's place: the link or joint that it is part of.
+    `owner` is the link or joint that contains an element, by which messages describe the element's location.
 
     Attributes:
         count: the number of findings.
@@ -191,19 +192,22 @@ class Report(Protocol):
         """Report that a required attribute, or the text inside the element, is missing."""
 
     def malformed(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> Any:
-        """Report a malformed attribute or text, and return the value to continue with, or `UNREADABLE`."""
+        """Report a malformed value, and return the value to use instead, or `UNREADABLE`.
+
+        The value is that of an attribute or the text inside the element.
+        """
 
     def too_new(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> None:
-        """Report that an attribute is ignored, because a later version of the language added it."""
+        """Report that an attribute is ignored because a later version of the language added it."""
 
     def missing_child(self, element: Element, rule: ElementRule, child: ElementRule, owner: Element) -> None:
         """Report that a required child is missing."""
 
     def empty_choice(self, element: Element, rule: ElementRule, owner: Element) -> None:
-        """Report that none of several children exists."""
+        """Report that an element has none of the children of which it must have one."""
 
     def unknown_choice(self, child: Element, rule: ElementRule, owner: Element) -> None:
-        """Report a child that is not one of the expected ones in this version of the language."""
+        """Report a child that is not among the allowed ones in this version of the language."""
 
 
 Read = Callable[[Element, Element, Report], Any]
@@ -217,10 +221,10 @@ class ElementReader(NamedTuple):
     """A compiled rule.
 
     Attributes:
-        read: returns the object of an element, or `UNREADABLE`; for an element whose values are fields of the parent's
-            object, the tuple of these values.
-        memory: names and values of attributes -> the result of `read`, if it has nothing to report; always empty for
-            elements with a text or children.
+        read: the function that returns the object of an element, or `UNREADABLE`. For an element whose values are
+            fields of the parent's object, it returns the tuple of these values.
+        memory: the cached results of `read` without findings, by the names and values of the attributes; always empty
+            for elements with a text or children.
     """
 
     read: Read
@@ -231,7 +235,7 @@ _memories: list[_Memory] = []
 
 
 def forget() -> None:
-    """Clear the cached results of readers; for benchmarks."""
+    """Clear the cached results of all readers, for benchmarks."""
     for memory in _memories:
         memory.clear()
 
@@ -290,7 +294,7 @@ def _choice_reader(rule: ElementRule, version: Version) -> ElementReader:
 
 
 def _nested_reader(rule: ElementRule, version: Version) -> ElementReader:
-    """Return the reader of elements with children, or whose object stores its element."""
+    """Return the reader of elements that have children, or whose object stores its element."""
     scope = _scope(rule, version)
     for index, child in enumerate(rule.children):
         if child.since <= version:
@@ -301,7 +305,7 @@ def _nested_reader(rule: ElementRule, version: Version) -> ElementReader:
 
 
 def _compiled_later(name: str, rule: ElementRule, version: Version, scope: dict[str, Any]) -> Read:
-    """Return a reader that compiles and replaces itself at the first element.
+    """Return a reader that compiles and replaces itself when it reads its first element.
 
     Most robots use only half of the language.
     """
@@ -314,7 +318,7 @@ def _compiled_later(name: str, rule: ElementRule, version: Version, scope: dict[
 
 
 def _scope(rule: ElementRule, version: Version) -> dict[str, Any]:
-    """Return the names used by the generated source of a reader."""
+    """Return the names that the generated source of a reader uses, with their values."""
     scope: dict[str, Any] = {
         "Element": Element,
         "UNREADABLE": UNREADABLE,

@@ -1,4 +1,4 @@
-"""The elements and attributes of a language as data."""
+"""Rules that describe the elements and attributes of a language as data."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ class ValueType:
     """The type of a value in a file.
 
     Attributes:
-        name: the name in messages and documentation: ``3 numbers``.
-        read: parses a text; raises `ValueError` if the text is not a valid value.
-        write: formats a value; returns None for a value without a text.
+        name: the name in messages and documentation, such as ``3 numbers``.
+        read: the function that parses a text, and raises `ValueError` for an invalid one.
+        write: the function that formats a value, and returns None for a value that is not written.
     """
 
     name: str
@@ -35,14 +35,14 @@ class AttributeRule:
         type: the type of the value.
         meaning: one phrase for hints, hover texts and documentation.
         unit: the SI unit, or an empty string.
-        required: whether the element cannot be read without it.
-        default: the value of an absent attribute, as text; None if there is none.
-        since: the version that added it; files of older versions ignore it.
+        required: whether the element cannot be read without the attribute.
+        default: the value of an absent attribute, as text, or None if there is none.
+        since: the version that added the attribute; in files of older versions it is ignored.
         until: the version that made a required attribute optional, or None.
-        later_default: a version, and the default from that version on.
-        usual: whether it is usually written although it is not required.
-        field: the object's field for the value; the attribute's name by default.
-        get: returns the value to write from the object, if that is not simply the field.
+        later_default: a version, and the default from this version on.
+        usual: whether the attribute is usually written although it is not required.
+        field: the field of the object that stores the value; by default, the field with the attribute's name.
+        get: the function that returns the value to write from the object, if this is not simply the field.
     """
 
     name: str
@@ -60,19 +60,19 @@ class AttributeRule:
 
     @property
     def target(self) -> str:
-        """The name of the object's field for the attribute's value."""
+        """The name of the object's field that stores the attribute's value."""
         return self.field or self.name
 
     def value_in(self, instance: Any) -> Any:
-        """Return the attribute's value in an object."""
+        """Return the attribute's value from an object."""
         return getattr(instance, self.target) if self.get is None else self.get(instance)
 
     def is_required(self, version: Version) -> bool:
-        """Return whether files of this version must contain the attribute."""
+        """Return whether files of a version must contain the attribute."""
         return self.required and (self.until is None or version < self.until)
 
     def absent_value(self, version: Version) -> Any:
-        """Return the default in this version of the language; None if there is none."""
+        """Return the parsed default in a version of the language, or None if there is none."""
         if self.later_default is not None and version >= self.later_default[0]:
             return self.later_default[1]
         return None if self.default is None else self.type.read(self.default)
@@ -80,33 +80,34 @@ class AttributeRule:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ElementRule:
-    """The rule of an element in its place: its attributes, its children, and the object that it is read into.
+    """The rule of an element in its parent: its attributes, its children, and the object for it.
 
     Attributes:
         tag: the element's name.
         meaning: one phrase for hover texts and documentation.
-        attribute_rules: the rules of its attributes by name.
-        child_rules: the rules of its children by tag, including its own tag if it nests.
-        attributes: the rules of its attributes, in the order of the documentation.
+        attribute_rules: the rules of the attributes, by name.
+        child_rules: the rules of the children, by tag, including the element's own tag if it nests.
+        attributes: the rules of the attributes, in the order of the documentation.
         children: the rules of the children that are read, in the order in which they are written.
-        required: whether the parent element cannot be read without it.
-        many: whether all elements with the tag are read; otherwise only the first is.
-        since: the version that added it.
+        required: whether the parent element cannot be read without this element.
+        many: whether all elements with the tag are read; otherwise, only the first one is.
+        since: the version that added the element.
         text: the rule of the text inside, for an element whose value is its text.
-        choice: whether the first child selects one of several kinds, and its object is this element's object.
-        make: creates the object, which must not be false, from keyword arguments: the fields of attributes and
-            children; None if they are fields of the parent's object, as for ``<mass value="1"/>``.
-        located: whether `make` takes the element, as ``element``.
-        field: the field of the parent's object; the tag's name by default.
-        get: returns the value to write from the parent's object, if that is not simply its field.
+        choice: whether the first child selects one of several kinds, so that its object is the object of this element.
+        make: the function that creates the object from keyword arguments: the fields of attributes and children. The
+            object must not be false. None if the values are fields of the parent's object, as for ``<mass
+            value="1"/>``.
+        located: whether `make` takes the element as the argument ``element``.
+        field: the field of the parent's object; by default, the field with the name of the tag.
+        get: the function that returns the value to write from the parent's object, if this is not simply the field.
         default: the default of an absent element: an object, or the tuple of values for the fields of the parent's
             object.
-        owns: whether messages describe places inside the element by this element, such as a colour by its material.
-        keeps: whether an element with unreadable parts still results in an object, with defaults for these parts; an
+        owns: whether messages about the inside of the element name this element, as for the colour of a material.
+        keeps: whether an element with unreadable parts still results in an object, with defaults for these parts. An
             unreadable part that may occur many times is `UNREADABLE`.
-        nests: whether it may contain elements of its own kind.
-        check: checks a value, with its element, its owner and the report; returns the value to use instead, or
-            `UNREADABLE`.
+        nests: whether the element may contain elements of its own kind.
+        check: the function that checks a value, given its element, its owner and the report. It returns the value to
+            use instead, or `UNREADABLE`.
     """
 
     tag: str
@@ -137,7 +138,7 @@ class ElementRule:
 
     @property
     def target(self) -> str:
-        """The name of the parent's field for the element's object."""
+        """The name of the parent's field that stores the element's object."""
         return self.field or self.tag
 
     @property
@@ -147,11 +148,11 @@ class ElementRule:
 
     @property
     def is_value(self) -> bool:
-        """Whether the element's only value is the text inside, as for ``<mass>2.5</mass>`` of SDF."""
+        """Whether the element's only value is its text, as for ``<mass>2.5</mass>`` of SDF."""
         return self.text is not None and not (self.attributes or self.children)
 
     def value_in(self, instance: Any) -> Any:
-        """Return the object, or objects, for this element from the parent's object."""
+        """Return the object or objects of this element from the parent's object."""
         return getattr(instance, self.target) if self.get is None else self.get(instance)
 
     @property

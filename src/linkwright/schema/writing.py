@@ -1,4 +1,4 @@
-"""Writing of objects as elements, by the same rules by which they are read."""
+"""The conversion of objects to elements, by the same rules by which elements are read."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ Completion = Callable[[Element, ElementRule, Any], None]
 
 
 def write_element(rule: ElementRule, instance: Any, complete: Completion | None = None) -> Element:
-    """Convert an object to an element, which reads back as an equal object.
+    """Return an object as an element, which reads back as an equal object.
 
     Default values are omitted, except those that are usually written.
 
     Args:
         rule: the rule of the element.
         instance: the object, with a field for each attribute and child.
-        complete: called for each object that has its own element, with that element and its rule.
+        complete: a function that is called for each object with its own element, with this element and its rule.
     """
     if rule.choice:
         chosen = next(child for child in rule.children if type(instance) is child.make)

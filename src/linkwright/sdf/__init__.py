@@ -1,1 +1,1 @@
-"""Read SDF worlds and models, resolve includes, and compute poses."""
+"""Reads SDF worlds and models, resolves includes, and computes poses."""

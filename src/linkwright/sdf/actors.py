@@ -18,7 +18,7 @@ from linkwright.xmltree import Element
 
 @dataclass(frozen=True, slots=True)
 class Skin:
-    """The mesh of an actor, by its URI, and its scale."""
+    """The mesh file of an actor, and the scale of the mesh."""
 
     filename: str = "__default__"
     scale: float = 1.0
@@ -26,7 +26,10 @@ class Skin:
 
 @dataclass(frozen=True, slots=True)
 class Animation:
-    """An animation of the limbs from a file; with `interpolate_x` its speed follows the actor's speed."""
+    """An animation of an actor's limbs.
+
+    With `interpolate_x`, the speed of the animation follows the speed of the actor.
+    """
 
     name: str
     filename: str = "__default__"
@@ -36,7 +39,7 @@ class Animation:
 
 @dataclass(frozen=True, slots=True)
 class Waypoint:
-    """The pose of the actor at a time in seconds."""
+    """A pose of the actor, and its time in seconds."""
 
     time: float = 0.0
     pose: RawPose = AT_ORIGIN
@@ -44,7 +47,10 @@ class Waypoint:
 
 @dataclass(frozen=True, slots=True)
 class Trajectory:
-    """A path through waypoints, walked with the animation `type`; tension 0 makes it round, 1 straight."""
+    """A path through waypoints, with the name of an animation as its `type`.
+
+    The path is round for a tension of 0, and straight for 1.
+    """
 
     id: int = 0
     type: str = ""
@@ -54,7 +60,10 @@ class Trajectory:
 
 @dataclass(frozen=True, slots=True)
 class Script:
-    """The timing of the walk: after `delay_start` seconds, automatic or on request, once or in a loop."""
+    """The timing of an actor's walk, and its paths.
+
+    The walk begins after `delay_start` seconds.
+    """
 
     loop: bool = True
     delay_start: float = 0.0

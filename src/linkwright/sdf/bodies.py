@@ -23,7 +23,7 @@ class Part:
     Attributes:
         link: the link.
         pose: the pose of the link's frame in the frame of the body.
-        joint: the fixed joint that makes it a part; None for the link that names the body.
+        joint: the fixed joint that attaches the link; None for the link that names the body.
     """
 
     link: Link
@@ -51,7 +51,7 @@ class Body:
 
     @property
     def name(self) -> str:
-        """The name of the SDF link that the body becomes."""
+        """The name of the SDF link that represents the body."""
         return self.parts[0].link.name
 
 
@@ -93,5 +93,5 @@ def bodies_of(robot: Robot, is_lumped: Callable[[Joint], bool]) -> list[Body]:
 
 
 def _by_name(joints: list[Joint]) -> list[Joint]:
-    """Return joints in reverse order of their names, because they are taken from the end."""
+    """Return joints in reverse order of their names, because the caller pops them from the end."""
     return sorted(joints, key=lambda joint: joint.name, reverse=True)

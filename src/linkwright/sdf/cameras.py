@@ -33,7 +33,7 @@ class Clip:
 
 @dataclass(frozen=True, slots=True)
 class Distortion:
-    """Brown's distortion coefficients of a lens; `center` is in fractions of the image size."""
+    """The coefficients of Brown's lens distortion; `center` is in fractions of the image size."""
 
     k1: float = 0.0
     k2: float = 0.0
@@ -59,22 +59,22 @@ class Camera:
     """A camera, which looks along x of its frame, with z up.
 
     Attributes:
-        name: the name of one camera among several.
+        name: the name, which distinguishes the cameras of a sensor with several.
         pose: the pose in the frame of the sensor.
         horizontal_fov: the horizontal field of view, in radians.
         image: the size and format of the image.
         clip: the minimum and maximum visible distances.
-        noise: the noise on each colour, whose values range from 0 to 1.
+        noise: the noise on each colour value, in the range from 0 to 1.
         distortion: the distortion of the lens; None if there is none.
-        intrinsics: override the field of view if given; else None.
+        intrinsics: the intrinsics, which override the field of view; None if there are none.
         depth_clip: the range of a depth camera; None for the same as `clip`.
         segmentation_type: ``semantic`` or ``instance`` (also ``panoptic``).
         box_type: ``2d``, ``visible_2d``, ``full_2d`` or ``3d``.
-        camera_info_topic: the topic of its camera info; empty for the default topic.
-        optical_frame_id: the frame of its images; empty for the frame of the sensor.
-        triggered: whether it renders images only on request.
+        camera_info_topic: the topic of the camera info; empty for the default topic.
+        optical_frame_id: the frame of the images; empty for the frame of the sensor.
+        triggered: whether the camera renders images only on request.
         trigger_topic: the topic of these requests.
-        visibility_mask: selects the visuals that it sees, by having a bit in common.
+        visibility_mask: a bit mask; the camera sees visuals whose flags have a bit in common with it.
     """
 
     name: str = ""

@@ -1,4 +1,4 @@
-"""Compare parts of models for equal content, regardless of how and where it was written."""
+"""Compares parts of models for equal content, regardless of how and where they were written."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from linkwright.xmltree import Element
 def alike(one: Any, other: Any) -> bool:
     """Return whether two parsed parts of a file, or tuples of parts, have equal content.
 
-    Comments, blanks and positions in the text make no difference. The parameters of plugins, which only their elements
-    hold, do make a difference, and so do the folders of files that name meshes by paths.
+    Comments, whitespace and positions in the text are ignored. Parameters of plugins are compared in their elements.
+    The folders of files are compared where parts name meshes by relative paths.
     """
     if one is other:
         return True
@@ -45,7 +45,7 @@ def _content(element: Element) -> tuple[object, ...]:
 
 
 def _folder(part: Visual | Collision) -> Path | None:
-    """Return the folder to which the mesh paths in a part are relative; None if it makes no difference."""
+    """Return the folder to which a part's mesh path is relative; None if there is no such path."""
     shape, element = part.geometry, part.element
     if not isinstance(shape, Mesh | Heightmap) or "://" in shape.uri or element is None or element.source is None:
         return None

@@ -1,4 +1,4 @@
-"""Actors and roads as models for drawing, without contacts."""
+"""Actors and roads as models for display, without contacts."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def figure_of(actor: Actor, hips: Vector3 | None = (0.0, 0.0, 0.0)) -> Model:
         actor: the parsed actor.
         hips: the position of the skeleton's first joint in the mesh of the skin, in metres of the mesh; Gazebo puts
             this joint at the pose of the actor. None if the skin does not exist: a plain figure of a person's size
-            replaces it.
+            replaces the skin.
     """
     links = [Link(link.name, pose=link.pose, visuals=link.visuals, element=link.element) for link in actor.links]
     if actor.skin is not None and hips is None:
@@ -58,7 +58,7 @@ def figure_of(actor: Actor, hips: Vector3 | None = (0.0, 0.0, 0.0)) -> Model:
 
 
 def road_of(road: Road) -> Model:
-    """Return the model of a road: a strip of its width along its points, whose top is at their height."""
+    """Return the model of a road: a strip along its points, whose top is at the height of the points."""
     visuals: list[Visual] = []
     for start, end in zip(road.points, road.points[1:], strict=False):
         (x, y, z), (dx, dy, dz) = start, (end[0] - start[0], end[1] - start[1], end[2] - start[2])

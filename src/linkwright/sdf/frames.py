@@ -1,7 +1,8 @@
-"""Compute the poses of frames in models and worlds, by the "pose frame semantics" of SDF 1.7 and later.
+"""Computes poses of frames in models and worlds, by SDF's "pose frame semantics".
 
-Source: the proposal "Pose Frame Semantics" of SDFormat. Poses in older files, which do not name frames, have the same
-result. A frame is named within its model or world; ``arm::tip`` is the frame ``tip`` of the nested model ``arm``.
+Source: the proposal "Pose Frame Semantics" of SDFormat, for SDF 1.7 and later. Poses in older files, which do not name
+frames, have the same result. A frame is named within its model or world; ``arm::tip`` is the frame ``tip`` of the
+nested model ``arm``.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ class FrameError(Exception):
 
     Attributes:
         name: the frame that does not exist, or one frame of a cycle.
-        circle: the frames of the cycle in their order; empty for a frame that does not exist.
+        circle: the frames of the cycle, in order; empty for a frame that does not exist.
     """
 
     def __init__(self, name: str, circle: Sequence[str] = ()) -> None:
@@ -71,12 +72,16 @@ class Frames:
 
     def __contains__(self, name: str) -> bool:
         head, colon, tail = name.partition(SEPARATOR)
-        if not colon or name in self.named:  # old files have '::' in the names of links
+        if not colon or name in self.named:  # Link names in old files contain '::'.
             return name in self._roots or name in self.named
         return isinstance(self.named.get(head), Model) and tail in self.inside(head)
 
     def inside(self, name: str) -> Frames:
-        """Return the frames of a nested model."""
+        """Return the frames of a nested model.
+
+        Raises:
+            FrameError: there is no nested model with this name.
+        """
         frames = self._inner.get(name)
         if frames is None:
             model = self.named.get(name)
@@ -91,7 +96,7 @@ class Frames:
         Raises:
             FrameError: the frame does not exist, or is indirectly defined relative to itself.
         """
-        pending: dict[str, None] = {}  # frames from the requested one to the first with a known pose
+        pending: dict[str, None] = {}  # frames from the requested one to one with a known pose
         while name not in self._roots and name not in self._poses:
             if name in pending:
                 circle = list(pending)
@@ -104,11 +109,11 @@ class Frames:
         return found
 
     def placed(self, pose: RawPose, absent: str = "") -> Transform:
-        """Return the pose of a part in the model or world.
+        """Return a written pose as a transform in the model or world.
 
         Args:
             pose: the pose as written.
-            absent: the frame to which the pose is relative if it does not name one.
+            absent: the frame to which a pose is relative that does not name a frame; the model or world if empty.
 
         Raises:
             FrameError: as for `pose`.
@@ -118,7 +123,7 @@ class Frames:
     def in_link(self, pose: RawPose, link: str) -> Transform:
         """Return the pose of a part of a link in the frame of the link.
 
-        A pose relative to an unknown frame counts as relative to the link, as in libsdformat; `check` reports it.
+        As in libsdformat, a pose relative to an unknown frame is treated as relative to the link; `check` reports it.
 
         Raises:
             FrameError: the link cannot be placed.
@@ -139,9 +144,9 @@ class Frames:
         return rotate(invert(self.pose(joint.name))[3:], in_owner)
 
     def link(self, name: str) -> str:
-        """Return the link to which a frame is attached.
+        """Return the name of the link to which a frame is attached.
 
-        The name is relative to this model or world; it is ``world`` for a frame fixed to the world.
+        The name is relative to this model or world; ``world`` is returned for a frame fixed to the world.
 
         Raises:
             FrameError: the frame does not exist, is indirectly attached to itself, or the model has no link.
@@ -168,7 +173,11 @@ class Frames:
             name = found.attached_to if isinstance(found, Frame) else found.child
 
     def _canonical_link(self) -> str:
-        """Return the canonical link: the one that the model names, or else its first link."""
+        """Return the name of the canonical link: the link that the model declares, or else its first link.
+
+        Raises:
+            FrameError: the model has no link.
+        """
         model = self.owner
         assert isinstance(model, Model)
         if model.canonical_link:
@@ -180,7 +189,11 @@ class Frames:
         raise FrameError(MODEL)
 
     def _base(self, name: str) -> str:
-        """Return the frame to which the pose of another frame is relative."""
+        """Return the name of the frame to which the pose of a frame is relative.
+
+        Raises:
+            FrameError: the frame does not exist.
+        """
         found = self.named.get(name)
         head, colon, _ = name.partition(SEPARATOR)
         if found is None and colon:
@@ -191,7 +204,7 @@ class Frames:
         return found.pose.relative_to or absent
 
     def _in_base(self, name: str) -> Transform:
-        """Return the pose of a frame in the frame to which it is relative."""
+        """Return the pose of a frame in the frame that `_base` returns."""
         found = self.named.get(name)
         if found is None:
             head, _, tail = name.partition(SEPARATOR)
@@ -204,15 +217,15 @@ class Frames:
 
 @dataclass(frozen=True, slots=True)
 class PlacedLink:
-    """A link of a world.
+    """A link with its pose in the world.
 
     Attributes:
         name: the name with the enclosing models: ``robot::arm::tip``.
         link: the parsed link.
-        model: the model that directly contains it.
+        model: the model that directly contains the link.
         frames: the frames of that model.
-        pose: the pose of its frame in the world.
-        static: whether its model, or an enclosing model, never moves.
+        pose: the pose of the link's frame in the world.
+        static: whether that model, or a model that encloses it, never moves.
     """
 
     name: str
@@ -224,7 +237,7 @@ class PlacedLink:
 
 
 def placed_links(world: World) -> Iterator[PlacedLink]:
-    """Yield all links of a world, in document order, each with its pose.
+    """Yield all links of a world with their poses, in document order.
 
     Raises:
         FrameError: a link cannot be placed.
@@ -235,13 +248,13 @@ def placed_links(world: World) -> Iterator[PlacedLink]:
 
 
 def links_of(model: Model, frames: Frames, pose: Transform, name: str, *, static: bool = False) -> Iterator[PlacedLink]:
-    """Yield all links of a model and its nested models, each with its pose.
+    """Yield all links of a model and its nested models, with their poses.
 
     Args:
         model: the model, with its includes resolved.
         frames: the frames of the model.
-        pose: the pose of its frame in the world.
-        name: its name in the world.
+        pose: the pose of the model's frame in the world.
+        name: the name of the model in the world.
         static: whether an enclosing model never moves.
 
     Raises:
@@ -265,7 +278,7 @@ def transform_of(pose: Pose) -> Transform:
 def pose_of(transform: Transform) -> Pose:
     """Return a transform as a pose with angles.
 
-    The pose also has the quaternion if the angles would not be exact.
+    The pose also has the quaternion if the angles do not represent the rotation exactly.
     """
     rotation = transform[3:]
     rpy = rpy_from_quaternion(rotation)

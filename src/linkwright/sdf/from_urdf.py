@@ -1,4 +1,4 @@
-"""Convert a robot from URDF to a model in SDF, as gz does.
+"""Converts a robot from URDF to a model in SDF, as gz does.
 
 Source: libsdformat's parser of URDF and its page "URDF extensions in SDFormat".
 """
@@ -41,11 +41,11 @@ _BRIGHTER = 1.25
 
 @dataclass(frozen=True, slots=True)
 class Conversion:
-    """The result of a conversion.
+    """An SDF model that was converted from URDF.
 
     Attributes:
         model: the robot as an SDF model.
-        diagnostics: errors in its ``<gazebo>`` elements, and parts that SDF cannot express.
+        diagnostics: errors in the robot's ``<gazebo>`` elements, and parts that SDF cannot express.
     """
 
     model: Model
@@ -53,7 +53,7 @@ class Conversion:
 
 
 def model_from_robot(robot: Robot, *, lump_fixed_joints: bool) -> Conversion:
-    """Convert a robot as gz does.
+    """Convert a robot to an SDF model, as gz does.
 
     A root link called ``world`` represents the world. The addresses of meshes are not changed.
 
@@ -104,7 +104,7 @@ class _Converter:
         )
 
     def _with_mass(self, bodies: list[Body]) -> list[Body]:
-        """Return the bodies with a mass; bodies below a massless one are also left out, as in gz."""
+        """Return the bodies that have mass; as in gz, descendants of massless bodies are also left out."""
         left_out: set[str] = set()
         kept = []
         for body in bodies:
@@ -127,7 +127,7 @@ class _Converter:
         self._report.warning("SDF170", message, element, hint=phrase("give it an <inertial> with a mass"))
 
     def _report_default_mass(self, bodies: list[Body]) -> None:
-        """Warn of a movable body without mass: SDF gives it 1 kg, whereas gz leaves it out."""
+        """Report links without mass that can move: SDF gives them 1 kg, whereas gz leaves them out."""
         if self._lumps:
             return
         links = [body.parts[0].link for body in bodies if body.joint is None or body.joint.type != "fixed"]
@@ -164,12 +164,15 @@ class _Converter:
         )
 
     def _weightless(self, link: urdf.Link) -> Inertial | None:
-        """Return a tiny inertial for a massless link that is fixed to links with mass; otherwise None."""
+        """Return a tiny inertial for a massless link that is fixed to links with mass; otherwise None.
+
+        None is also returned if links are lumped.
+        """
         rigid = self._rigid.of(link.name)
         return _FRAME if not self._lumps and rigid is not None and self._rigid.mass(rigid) > 0 else None
 
     def _pose(self, body: Body) -> RawPose:
-        """Return the pose of a link: the pose of its joint, relative to the link itself or to its parent link."""
+        """Return the pose of a body's link: zero relative to its joint, or the pose in the parent link."""
         if body.joint is None:
             return RawPose()
         if body.joint.type in _TYPES and body.joint.name not in self._robot.links:
@@ -207,7 +210,7 @@ class _Converter:
         )
 
     def _frames(self, body: Body) -> Iterator[Frame]:
-        """Yield the lumped links and their joints as frames."""
+        """Yield the frames that represent the lumped links of a body and their joints."""
         for part in body.parts[1:]:
             joint, link = part.joint, part.link
             assert joint is not None
@@ -238,21 +241,21 @@ def _from_parent(body: Body) -> RawPose:
 
 
 def _moved(posed: _Posed, pose: Transform) -> _Posed:
-    """Return a part of a link, moved to the frame of its body."""
+    """Return a sensor or light of a link, with its pose in the frame of the link's body."""
     if posed.pose.relative_to:
         return posed
     return replace(posed, pose=RawPose(pose_of(compose(pose, transform_of(posed.pose.pose)))))
 
 
 def _placed(pose: Pose, part: Part) -> RawPose:
-    """Return a pose in the frame of a part, expressed in the frame of the part's body."""
+    """Return a pose in the frame of a body, given in the frame of one of the body's parts."""
     return RawPose(pose if part.joint is None else pose_of(compose(part.pose, transform_of(pose))))
 
 
 def _inertial(parts: Sequence[Part]) -> Inertial | None:
     first = parts[0].link.inertial
     if any(part.link.inertial for part in parts[1:]):
-        from linkwright.sdf.lumping import lumped_inertial  # imported here, because it imports numpy
+        from linkwright.sdf.lumping import lumped_inertial  # delays the import of numpy
 
         return lumped_inertial(parts)
     if first is None:
@@ -288,7 +291,7 @@ def _collisions(body: Body, extensions: Mapping[str, LinkExtension]) -> Iterator
 
 
 def _name_of_shape(body: Body, part: Part, own: str, kind: str, count: int) -> str:
-    """Return the name of a shape, as libsdformat forms it.
+    """Return the name of a visual or collision, as libsdformat forms it.
 
     Examples are ``wheel_visual``, ``wheel_visual_1`` and ``base_fixed_joint_lump__camera_visual_2``.
     """
@@ -305,7 +308,10 @@ def _shape(geometry: urdf.Geometry) -> shapes.Shape:
 
 
 def _material(written: urdf.Material | None, extension: Material | None) -> Material | None:
-    """Return the material of a visual; the colours and scripts of ``<gazebo>`` take precedence."""
+    """Return the material of a visual, or None if there is none.
+
+    The colours and scripts of ``<gazebo>`` take precedence over the URDF material.
+    """
     if (
         extension is not None
         and extension.script is not None
@@ -329,7 +335,7 @@ def _brighter(part: float) -> float:
 
 
 def _axis(joint: urdf.Joint, extension: Axis) -> Axis:
-    """Return the axis of a joint, with the spring from ``<gazebo>``."""
+    """Return the axis of a joint, with the spring that its ``<gazebo>`` element sets."""
     limit, dynamics, mimic = AxisLimit(), extension.dynamics, None
     if joint.limit is not None:
         limit = AxisLimit(effort=joint.limit.effort, velocity=joint.limit.velocity)

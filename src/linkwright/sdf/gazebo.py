@@ -1,8 +1,8 @@
-"""``<gazebo>`` in a URDF: the part of a description that only simulators read.
+"""The element ``<gazebo>`` in a URDF, which only simulators read.
 
-Most of its content is SDF for the link, joint or model to which it refers. Some words are older than SDF and mean
-SDF elements (``mu1``, ``turnGravityOff``). Both are combined into one SDF element, which the SDF tables read, so that
-errors are reported at their place in the URDF.
+Most of its content is SDF for the link, joint or model to which it refers. Some of its tags are older than SDF and
+represent SDF elements (``mu1``, ``turnGravityOff``). Both are combined into one SDF element, which the SDF tables read,
+so that errors are reported at their positions in the URDF.
 
 Source: libsdformat's parser of URDF. That parser finds the shapes of a link by names derived from the link, and
 therefore skips shapes with other names; here the settings apply to all shapes of the link.
@@ -71,12 +71,12 @@ _MATERIALS = "file://media/materials/scripts/gazebo.material"
 
 @dataclass(frozen=True, slots=True)
 class LinkExtension:
-    """The simulators' settings of a link.
+    """The settings of a link in ``<gazebo>``.
 
     Attributes:
-        link: sensors, lights and whether gravity acts; its shapes, mass and pose are not those of the link.
-        visual: settings for each of its visuals, except geometry and pose.
-        collision: settings for each of its collisions, except geometry and pose.
+        link: an SDF link with sensors, lights and whether gravity acts; its shapes, mass and pose do not apply.
+        visual: settings for each visual of the link, except geometry and pose.
+        collision: settings for each collision of the link, except geometry and pose.
     """
 
     link: Link
@@ -85,11 +85,11 @@ class LinkExtension:
 
 
 class Extensions:
-    """The ``<gazebo>`` elements of a robot by their ``reference``.
+    """The ``<gazebo>`` elements of a robot, by their ``reference``.
 
     Args:
         robot: the robot.
-        report: receives their errors.
+        report: receives the errors in these elements.
     """
 
     def __init__(self, robot: Robot, report: SdfReport) -> None:
@@ -100,7 +100,10 @@ class Extensions:
                 self._by_name[element.attributes.get("reference", "")].append(element)
 
     def model(self, robot: Robot) -> Model:
-        """Return the settings of the whole robot: plugins, and links and joints that URDF cannot express."""
+        """Return an SDF model with the settings of the whole robot.
+
+        These are plugins, and links and joints that URDF cannot express.
+        """
         whole = _like(robot.element, "model", robot.name)
         for gazebo in self._by_name.get("", ()):
             whole.children += _blobs(gazebo)
@@ -126,7 +129,7 @@ class Extensions:
         )
 
     def joint(self, joint: urdf.Joint, robot: Robot) -> Joint:
-        """Return the settings of a joint: sensors, a spring, and whether its forces are measured."""
+        """Return an SDF joint with the settings of a joint: sensors, a spring, and force feedback."""
         whole = _like(joint.element, "joint", joint.name)
         whole.attributes["type"] = "fixed"
         _put(whole, "parent", joint.parent, whole)
@@ -139,11 +142,14 @@ class Extensions:
         return found
 
     def stays_fixed(self, joint: urdf.Joint) -> bool:
-        """Return whether the links of a fixed joint stay separate (``preserveFixedJoint``)."""
+        """Return whether the links of a fixed joint are not merged (``preserveFixedJoint``)."""
         return self._is_true(joint, _KEPT_FIXED)
 
     def becomes_revolute(self, joint: urdf.Joint) -> bool:
-        """Return whether a fixed joint becomes a revolute one with equal limits (``disableFixedJointLumping``)."""
+        """Return whether a fixed joint becomes a revolute joint that cannot move.
+
+        This is requested by ``disableFixedJointLumping``.
+        """
         return self._is_true(joint, _MADE_REVOLUTE) and not self.stays_fixed(joint)
 
     def _is_true(self, joint: urdf.Joint, word: str) -> bool:
@@ -151,7 +157,10 @@ class Extensions:
         return any(_text_of(element).casefold() in _TRUE for element in elements)
 
     def _add_words(self, whole: Element, gazebo: Element, words: _Words, rule: ElementRule) -> None:
-        """Add the elements for old words to an element; the last of several equal words counts."""
+        """Add the SDF elements for the old tags in `gazebo` to an element.
+
+        If a tag occurs several times, its last value applies.
+        """
         for word in gazebo.elements():
             for path in words.get(word.tag, ()):
                 place, text = _rule_at(rule, path), _text_of(word)
@@ -169,19 +178,19 @@ class Extensions:
 
 
 def _like(element: Element | None, tag: str, name: str) -> Element:
-    """Return a new SDF element with the position of a URDF element."""
+    """Return a new SDF element with the source position of a URDF element."""
     if element is None:
         return Element(tag, {"name": name})
     return Element(tag, {"name": name}, element.source, element.offset, element.origin)
 
 
 def _blobs(gazebo: Element) -> Iterator[Element]:
-    """Yield the children that are already SDF."""
+    """Yield the child elements that are already SDF."""
     return (element for element in gazebo.elements() if element.tag not in _WORDS and element.tag not in _SHAPES)
 
 
 def _merge(shape: Element, given: Element) -> None:
-    """Merge the settings for all shapes of a link; a later surface or material replaces an earlier one."""
+    """Add settings to those for all shapes of a link; a later surface or material replaces earlier ones."""
     for element in given.elements():
         if element.tag in ("surface", "material"):
             shape.children = [other for other in shape.elements() if other.tag != element.tag]
@@ -195,7 +204,10 @@ def _copied(element: Element) -> Element:
 
 
 def _put(whole: Element, path: str, text: str, place: Element) -> None:
-    """Set the text of a nested element, creating missing elements with the position of another element."""
+    """Set the text of a descendant at a path of tags, creating missing elements.
+
+    New elements have the source position of `place`.
+    """
     for tag in path.split("/"):
         inner = whole.first(tag)
         if inner is None:
@@ -212,12 +224,15 @@ def _with_text(word: Element, text: str) -> Element:
 
 
 def _text_of(word: Element) -> str:
-    """Return the value of an old word, from its attribute ``value`` or its text."""
+    """Return the value of an old tag, from its attribute ``value`` or its text."""
     return word.attributes.get("value", word.text()).strip()
 
 
 def _truth(word: str, text: str) -> str:
-    """Return a boolean as ``true`` or ``false``; any other text becomes the word's default value."""
+    """Return the value of an old boolean tag as ``true`` or ``false``, as the SDF element requires.
+
+    Any other text becomes ``false``.
+    """
     folded = text.casefold()
     if word in _NEGATED:
         return "true" if folded in _FALSE else "false"

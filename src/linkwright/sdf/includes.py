@@ -1,4 +1,4 @@
-"""Resolve ``<include>`` in worlds and models."""
+"""Resolves ``<include>`` in worlds and models."""
 
 from __future__ import annotations
 
@@ -32,10 +32,11 @@ class Included:
     """A file after its includes were resolved.
 
     Attributes:
-        sdf: the file with its includes replaced by the included models; an include that cannot be resolved stays.
+        sdf: the file with its includes replaced by the included models; an include that cannot be resolved remains.
         diagnostics: errors in the included files, and includes of missing files.
         files: the files that were read, each once.
-        entities: the entities that the includes of worlds name, by their elements' IDs; None for a missing one.
+        entities: the entities that the includes of worlds name, by the ``id()`` of the include's element; None for a
+            missing entity.
     """
 
     sdf: Sdf
@@ -45,7 +46,7 @@ class Included:
 
 
 def resolve_includes(sdf: Sdf, path: Path, finder: ResourceFinder) -> Included:
-    """Replace the includes of a file by the models that they name.
+    """Replace the includes of a file by the models, lights and actors that they name.
 
     Args:
         sdf: the parsed file.
@@ -137,12 +138,12 @@ class _Resolver:
             return merged(whole, replace(part, placement_frame=""))
 
     def _included(self, include: Include, path: Path, chain: tuple[Path, ...]) -> Entity | None:
-        """Return the included model, light or actor with the include's changes, or None.
+        """Return the included model, light or actor, with the changes of the include.
 
-        A missing one is reported.
+        If it is missing, report this and return None.
         """
         if not include.uri:
-            return None  # the reader has reported it
+            return None  # The reader has reported it.
         found = self._finder.model(include.uri, path.parent)
         if isinstance(found, Missing):
             message = phrase("'{uri}' is left out: {reason}", uri=include.uri, reason=found.reason)
@@ -170,7 +171,7 @@ class _Resolver:
         return None
 
     def _check_name(self, entity: Entity | None, include: Include, names: set[str]) -> None:
-        """Report an included model whose name is already used, and record the name."""
+        """Add the name of an included model to `names`, and report it if the name is already used."""
         if not isinstance(entity, Model):
             return
         if entity.name in names:
@@ -180,7 +181,10 @@ class _Resolver:
         names.add(entity.name)
 
     def _read(self, path: Path, include: Include) -> Reading | None:
-        """Read an included file; its findings are reported once, with the position of the include."""
+        """Read an included file, or return the cached result; None if the file cannot be read.
+
+        The findings are added once, with a note that names the include.
+        """
         if path in self._readings:
             return self._readings[path]
         self.files[path] = None

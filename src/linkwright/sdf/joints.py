@@ -1,6 +1,6 @@
-"""``<joint>`` and its axes.
+"""The element ``<joint>`` and its axes.
 
-Source of the elements and defaults: the SDFormat specification 1.12, ``joint.sdf``; for the words of older versions
+Source of the elements and defaults: the SDFormat specification 1.12, ``joint.sdf``; for the tags of older versions
 libsdformat's conversions.
 """
 
@@ -34,7 +34,10 @@ JOINT_TYPES = (
 
 @dataclass(frozen=True, slots=True)
 class AxisLimit:
-    """Limits of an axis: positions in rad or m, effort in N m or N, velocity in rad/s or m/s; infinite for none."""
+    """Limits of an axis: positions in rad or m, effort in N m or N, velocity in rad/s or m/s.
+
+    A value without a limit is infinite.
+    """
 
     lower: float = -inf
     upper: float = inf
@@ -48,7 +51,7 @@ class AxisLimit:
 class AxisDynamics:
     """The damping of an axis in N m s/rad or N s/m, its friction in N m or N, and its spring.
 
-    The spring pulls towards a position in rad or m.
+    The spring pulls the joint towards a position in rad or m.
     """
 
     damping: float = 0.0
@@ -59,7 +62,10 @@ class AxisDynamics:
 
 @dataclass(frozen=True, slots=True)
 class AxisMimic:
-    """A mimic relation: position = multiplier (position of `joint` - reference) + offset, in rad or m (SDF 1.11)."""
+    """A mimic relation (SDF 1.11), in rad or m.
+
+    The position is multiplier * (position of `joint` - reference) + offset.
+    """
 
     joint: str
     axis: str = "axis"
@@ -73,9 +79,9 @@ class Axis:
     """One axis of a joint.
 
     Attributes:
-        xyz: its direction in the frame `expressed_in`.
-        expressed_in: a frame; empty for the frame of the joint.
-        initial_position: in rad or m, before SDF 1.9.
+        xyz: the direction of the axis in the frame `expressed_in`.
+        expressed_in: the name of a frame; empty for the frame of the joint.
+        initial_position: the initial position in rad or m, before SDF 1.9.
     """
 
     xyz: Vector3 = (0.0, 0.0, 1.0)
@@ -88,20 +94,20 @@ class Axis:
 
 @dataclass(frozen=True, slots=True)
 class Joint:
-    """A joint.
+    """A joint, which connects two links.
 
     Attributes:
         type: one of `JOINT_TYPES`.
         parent: a link or frame; ``world`` for the world.
         child: a link or frame.
         pose: the pose of the joint; by default in the frame of its child.
-        axis: its first axis; None for a joint without axes.
-        axis2: its second axis, if the joint type has two axes.
+        axis: the first axis; None for a joint without axes.
+        axis2: the second axis; None if the joint type has fewer than two axes.
         thread_pitch: for a screw joint, in metres per revolution (``screw_thread_pitch``); None if not given.
         gearbox_ratio: for a gearbox, the revolutions of the child, in the opposite direction, per revolution of the
             parent.
         gearbox_reference_body: for a gearbox, the link relative to which both rotate.
-        sensors: force-torque sensors.
+        sensors: the force-torque sensors of the joint.
     """
 
     name: str
@@ -135,7 +141,10 @@ def _direction(axis: Vector3, expressed_in: str) -> tuple[Vector3, str]:
 
 
 def _limit(lower: float, upper: float, effort: float, velocity: float, **rest: float) -> AxisLimit:
-    """Return a limit; values of 1e16 and more, and negative efforts or velocities, become infinite."""
+    """Return axis limits in which unlimited values are infinite.
+
+    Unlimited are values of 1e16 and more, and negative efforts and velocities.
+    """
     return AxisLimit(
         -inf if lower <= -1e16 else lower,
         inf if upper >= 1e16 else upper,
@@ -149,7 +158,7 @@ def _joint(
     screw_thread_pitch: float | None, thread_pitch: float | None, physics: _Physics | None, **parts: Any
 ) -> Joint:
     if screw_thread_pitch is None and thread_pitch is not None:
-        # The older word is in revolutions per metre, with the opposite sign.
+        # The older tag <thread_pitch> is in revolutions per metre, with the opposite sign.
         screw_thread_pitch = -6.283185307179586 / thread_pitch if thread_pitch else None
     measured = physics is not None and (physics.provide_feedback or bool(physics.ode and physics.ode.provide_feedback))
     return Joint(thread_pitch=screw_thread_pitch, provide_feedback=measured, **parts)

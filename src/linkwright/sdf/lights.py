@@ -16,7 +16,10 @@ from linkwright.xmltree import Element
 
 @dataclass(frozen=True, slots=True)
 class Attenuation:
-    """How light fades: 1 / (constant + linear d + quadratic d^2) at d metres, and no light beyond the range."""
+    """The attenuation of light: 1 / (constant + linear d + quadratic d^2) at a distance of d metres.
+
+    Beyond `range`, in metres, there is no light.
+    """
 
     range: float = 10.0
     constant: float = 1.0
@@ -26,7 +29,10 @@ class Attenuation:
 
 @dataclass(frozen=True, slots=True)
 class Spot:
-    """The cone of a spot light: full within the inner angle, dark outside the outer angle, in radians."""
+    """The cone of a spot light, with angles in radians.
+
+    The light is full within the inner angle, and does not reach beyond the outer angle.
+    """
 
     inner_angle: float = 0.0
     outer_angle: float = 0.0
@@ -35,19 +41,19 @@ class Spot:
 
 @dataclass(frozen=True, slots=True)
 class Light:
-    """A light.
+    """A light of a world or link.
 
     Attributes:
         type: ``point``, ``directional`` or ``spot``.
-        pose: its pose.
-        diffuse: its colour.
-        specular: the colour of its highlights.
-        direction: the direction of its rays in its own frame, for spot and directional lights.
-        attenuation: how it fades with distance.
+        pose: the pose of the light.
+        diffuse: the colour of the light.
+        specular: the colour of highlights.
+        direction: the direction of the rays in the light's own frame, for spot and directional lights.
+        attenuation: the decrease of the light with distance.
         spot: the cone of a spot light; None for other types.
-        cast_shadows: whether the objects that it lights cast shadows.
-        intensity: a factor for its colour.
-        light_on: whether it is switched on.
+        cast_shadows: whether lit objects cast shadows.
+        intensity: a factor for the colour.
+        light_on: whether the light is switched on.
     """
 
     name: str

@@ -1,4 +1,7 @@
-"""Count links without parsing a world completely, which would take minutes and gigabytes for a huge one."""
+"""Counts links without parsing a world completely.
+
+For a huge world, parsing would take minutes and gigabytes.
+"""
 
 from __future__ import annotations
 
@@ -12,9 +15,9 @@ _COUNTED = frozenset({"link", "include"})
 
 
 def has_more_links(data: bytes | str, most: int) -> bool:
-    """Return whether the first world in a text has more than a number of links and includes.
+    """Return whether the first world in a text has more than `most` links and includes.
 
-    Parsing stops at the first one that exceeds the number.
+    Parsing stops as soon as the number is exceeded.
 
     Args:
         data: the text; errors in its syntax are not reported here.
@@ -54,5 +57,5 @@ class _Counter:
             raise _DoneError
 
     def stop(self, *_declared: object) -> None:
-        """Stop counting at an XML entity, which may contain any text: the XML reader handles it."""
+        """Stop counting at an entity declaration, because an entity may contain any text."""
         raise _DoneError

@@ -1,4 +1,4 @@
-"""``<link>``: inertial, visuals, collisions and sensors.
+"""The element ``<link>``: inertial, visuals, collisions and sensors.
 
 Source of the elements and defaults: the SDFormat specification 1.12, ``link.sdf`` and the files of its parts.
 """
@@ -33,14 +33,14 @@ class Inertia:
 
 @dataclass(frozen=True, slots=True)
 class Inertial:
-    """Mass properties.
+    """The mass properties of a link.
 
     Attributes:
         mass: the mass in kg.
         pose: the centre of mass and the axes of the inertia tensor, in the frame of the link.
         inertia: the inertia tensor.
-        auto: whether to compute all of this from the collisions and their densities (SDF 1.11).
-        density: in kg/m3, for `auto`; None for the density of each collision.
+        auto: whether the mass properties are computed from the collisions and their densities (SDF 1.11).
+        density: the density in kg/m3 for `auto`; None for the density of each collision.
     """
 
     mass: float = 1.0
@@ -53,11 +53,11 @@ class Inertial:
 
 @dataclass(frozen=True, slots=True)
 class Visual:
-    """A shape to draw.
+    """A shape of a link that is rendered.
 
     Attributes:
-        transparency: from 0 for solid to 1 for invisible.
-        laser_retro: the intensity with which it reflects a laser; None if not specified.
+        transparency: the transparency, from 0 for opaque to 1 for invisible.
+        laser_retro: the intensity with which the visual reflects a laser; None if not specified.
         visibility_flags: the bits that the visibility masks of cameras select.
     """
 
@@ -75,11 +75,11 @@ class Visual:
 
 @dataclass(frozen=True, slots=True)
 class Collision:
-    """A shape for contacts.
+    """A shape of a link that has contacts.
 
     Attributes:
-        density: in kg/m3, for links whose mass is computed; None for the density of water.
-        laser_retro: the intensity with which it reflects a laser; None if not specified.
+        density: the density in kg/m3, for links whose mass is computed; None for the density of water.
+        laser_retro: the intensity with which the collision reflects a laser; None if not specified.
         max_contacts: the maximum number of contact points with another shape.
     """
 
@@ -95,7 +95,7 @@ class Collision:
 
 @dataclass(frozen=True, slots=True)
 class Decay:
-    """Velocity damping: the fraction of linear and angular velocity that is lost in a step."""
+    """Velocity damping: the fractions of linear and angular velocity that are lost in each step."""
 
     linear: float = 0.0
     angular: float = 0.0
@@ -103,15 +103,15 @@ class Decay:
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """A rigid body.
+    """A rigid body of a model.
 
     Attributes:
-        pose: its pose in the frame of its model.
-        inertial: mass properties; None if not given, which means 1 kg and 1 kg m2.
-        gravity: whether gravity acts on it.
-        enable_wind: whether wind moves it.
-        self_collide: whether it collides with other links of its model; None for the setting of the model.
-        kinematic: whether it moves without reacting to forces.
+        pose: the pose of the link in the frame of its model.
+        inertial: the mass properties; None if not given, which means 1 kg and 1 kg m2.
+        gravity: whether gravity acts on the link.
+        enable_wind: whether wind acts on the link.
+        self_collide: whether the link collides with other links of its model; None for the setting of the model.
+        kinematic: whether the link moves without reacting to forces.
     """
 
     name: str

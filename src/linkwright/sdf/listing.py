@@ -1,4 +1,4 @@
-"""List the contents of a world."""
+"""A text that lists the contents of a world."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.sdf.worlds import Sdf, World
 
 
 def sdf_text(sdf: Sdf) -> str:
-    """Return a list of models, lights and actors, one per line, with two blanks of indentation per level."""
+    """Return a list of models, lights and actors, one per line, indented by two spaces per level."""
     lines: list[str] = []
     for world in sdf.worlds:
         lines += [_line(0, phrase("world {name}", name=world.name)), *_world(world)]

@@ -1,4 +1,4 @@
-"""Combine the mass properties of several links."""
+"""Combines the mass properties of several links."""
 
 from __future__ import annotations
 
@@ -19,7 +19,8 @@ from linkwright.urdf import model as urdf
 def lumped_inertial(parts: Sequence[Part]) -> Inertial | None:
     """Return the combined mass properties of a body's parts, or None if no part has any.
 
-    They are in the axes of the first mass properties. Source of the axes: libsdformat's parser of URDF.
+    The axes of the inertia tensor are the axes of the first part's mass properties, or of the body if the first part
+    has none. Source of the axes: libsdformat's parser of URDF.
     """
     bodies = [_mass_properties(part.link.inertial).moved(pose_of(part.pose)) for part in parts if part.link.inertial]
     if not bodies:

@@ -1,4 +1,4 @@
-"""``<material>``: colours, textures and shaders.
+"""The element ``<material>``: colours, textures and shaders.
 
 Source of the elements and defaults: the SDFormat specification 1.12, ``material.sdf``.
 """
@@ -13,7 +13,10 @@ from linkwright.sdf.values import COLOR, NUMBER, TEXT, TRUTH, Color, object_rule
 
 @dataclass(frozen=True, slots=True)
 class MaterialScript:
-    """A material in a script of the renderer, such as ``Gazebo/Grey``, and the folders that contain scripts."""
+    """A material that a script of the renderer defines, and the URIs of scripts and folders.
+
+    An example of a name is ``Gazebo/Grey``.
+    """
 
     uris: tuple[str, ...] = ()
     name: str = ""
@@ -21,10 +24,10 @@ class MaterialScript:
 
 @dataclass(frozen=True, slots=True)
 class Workflow:
-    """A physically based material: images by their URIs, roughness and metalness from 0 to 1.
+    """The images, and the roughness and metalness from 0 to 1, of a physically based material.
 
     Attributes:
-        metalness: None if the other workflow (specular and glossiness) is given.
+        metalness: the metalness; None in the other workflow (specular and glossiness).
     """
 
     albedo_map: str = ""
@@ -44,7 +47,7 @@ class Workflow:
 
 @dataclass(frozen=True, slots=True)
 class Pbr:
-    """The workflows of a material, from which a renderer chooses one that it supports."""
+    """The workflows of a physically based material, from which a renderer chooses one."""
 
     metal: Workflow | None = None
     specular: Workflow | None = None
@@ -52,7 +55,7 @@ class Pbr:
 
 @dataclass(frozen=True, slots=True)
 class Shader:
-    """The shader of a material in Gazebo classic: ``vertex``, ``pixel`` or one with a normal map."""
+    """The shader of a material in Gazebo classic: ``vertex``, ``pixel`` or a type with a normal map."""
 
     type: str = "pixel"
     normal_map: str = ""
@@ -66,11 +69,11 @@ class Material:
         ambient: the colour in the shade.
         diffuse: the colour in the light.
         specular: the colour of highlights.
-        emissive: the colour that it emits.
+        emissive: the colour of emitted light.
         shininess: the specular exponent; higher values make highlights narrower.
-        lighting: whether lights affect it.
-        double_sided: whether it is also visible from inside.
-        render_order: in the same place, a surface with a higher order is drawn over one with a lower order.
+        lighting: whether lights affect the material.
+        double_sided: whether the surface is also visible from inside.
+        render_order: of overlapping surfaces, the one with the highest order is drawn on top.
         script: a material of a script, which overrides the colours in Gazebo classic.
         pbr: a physically based surface, which overrides everything else in gz-sim.
     """

@@ -1,4 +1,4 @@
-"""``<include merge="true">``, which makes the parts of one model parts of another (SDF 1.9).
+"""Merged includes, ``<include merge="true">``, whose parts become parts of a model (SDF 1.9).
 
 Source: the proposal "Merge include" of SDFormat and libsdformat's frame ``_merged__NAME__model__``.
 """
@@ -19,12 +19,12 @@ _Posed = TypeVar("_Posed", Link, Frame, Model)
 
 
 def merged(whole: Model, part: Model) -> Model:
-    """Return a model with the parts of another model added to its own.
+    """Return the model `whole` with the parts of the model `part` added.
 
-    The parts of the other model are placed in a new frame, which has the other model's pose.
+    The added parts are placed in a new frame, which has the pose of `part`.
 
     Raises:
-        FrameError: the other model's placement frame does not exist.
+        FrameError: the placement frame of `part` does not exist.
     """
     frame = f"_merged__{part.name}__model__"
     pose = part.pose
@@ -41,12 +41,15 @@ def merged(whole: Model, part: Model) -> Model:
         frames=(*whole.frames, *frames),
         models=(*whole.models, *(_moved(model, frame) for model in part.models)),
         plugins=(*whole.plugins, *part.plugins),
-        includes=(*whole.includes, *part.includes),  # includes that cannot be resolved
+        includes=(*whole.includes, *part.includes),  # those that cannot be resolved
     )
 
 
 def _moved(posed: _Posed, frame: str) -> _Posed:
-    """Return a part whose pose is relative to a frame that replaces its model's frame."""
+    """Return a part whose pose is relative to `frame` instead of its model's frame.
+
+    A pose that is relative to another frame remains.
+    """
     pose = posed.pose
     is_attached = isinstance(posed, Frame) and posed.attached_to != ""
     if pose.relative_to == MODEL or (pose.relative_to == "" and not is_attached):
@@ -59,9 +62,9 @@ def _attached(attached: Frame, frame: str) -> Frame:
 
 
 def _connected(joint: Joint, frame: str) -> Joint:
-    """Return a joint in which a frame replaces the model's frame.
+    """Return a joint in which references to the model's frame refer to `frame` instead.
 
-    The pose of the joint is relative to its child.
+    A pose without such a reference remains relative to the joint's child.
     """
     pose = RawPose(joint.pose.pose, frame) if joint.pose.relative_to == MODEL else joint.pose
     return replace(
@@ -75,7 +78,7 @@ def _connected(joint: Joint, frame: str) -> Joint:
 
 
 def _turned(axis: Axis | None, frame: str) -> Axis | None:
-    """Return an axis that refers to the frame of its model."""
+    """Return an axis that is expressed in `frame` if it was expressed in its model's frame."""
     if axis is None or axis.expressed_in != MODEL:
         return axis
     return replace(axis, expressed_in=frame)

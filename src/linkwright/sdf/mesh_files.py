@@ -1,4 +1,4 @@
-"""Paths of the meshes and heightmaps of worlds and models."""
+"""Paths of the mesh and heightmap files of worlds and models."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``<model>``: links, joints and nested models, and ``<include>``: a model from another file.
+"""The elements ``<model>`` and ``<frame>``, and ``<include>`` for a model from another file.
 
 Source of the elements and defaults: the SDFormat specification 1.12, ``model.sdf``, ``frame.sdf``.
 """
@@ -22,8 +22,9 @@ class Frame:
     """A frame of a model or world.
 
     Attributes:
-        attached_to: the link, joint, frame or model with which it moves; empty for the model or world that contains it.
-        pose: its pose; relative to `attached_to` by default.
+        attached_to: the link, joint, frame or model with which the frame moves; empty for the model or world that
+            contains the frame.
+        pose: the pose of the frame; relative to `attached_to` by default.
     """
 
     name: str
@@ -40,9 +41,9 @@ class Include:
         uri: ``model://NAME``, a path or the address of a model.
         name: the name to use; empty for the name in the file.
         pose: the pose to use; None for the pose in the file.
-        static: whether it never moves; None for the setting of the file.
-        placement_frame: its frame that is placed at `pose`; empty for the frame of the model.
-        merge: whether its parts become parts of the enclosing model (SDF 1.9).
+        static: whether the model never moves; None for the setting of the file.
+        placement_frame: the frame of the model that is placed at `pose`; empty for the model's own frame.
+        merge: whether the parts of the model become parts of the enclosing model (SDF 1.9).
         plugins: plugins in addition to those in the file.
     """
 
@@ -58,16 +59,16 @@ class Include:
 
 @dataclass(frozen=True, slots=True)
 class Model:
-    """A model.
+    """A model, which consists of links, joints and nested models.
 
     Attributes:
-        pose: its pose in the frame of the enclosing model or world.
-        static: whether it never moves.
-        self_collide: whether its links collide with each other.
-        allow_auto_disable: whether the engine may put it to sleep when it does not move.
-        enable_wind: whether wind moves its links.
-        canonical_link: the link to which its frame is attached; empty for the first link.
-        placement_frame: its frame that is placed at `pose`; empty for the frame of the model.
+        pose: the pose of the model in the frame of the enclosing model or world.
+        static: whether the model never moves.
+        self_collide: whether the links of the model collide with each other.
+        allow_auto_disable: whether the engine may put the model to sleep when it does not move.
+        enable_wind: whether wind acts on the links.
+        canonical_link: the link to which the model's frame is attached; empty for the first link.
+        placement_frame: the frame of the model that is placed at `pose`; empty for the model's own frame.
         scale: the scale in worlds that Gazebo classic saved, which few readers support.
         models: the nested models.
         includes: the models from other files.

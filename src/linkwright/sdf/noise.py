@@ -1,4 +1,4 @@
-"""``<noise>`` of sensors.
+"""The element ``<noise>`` of sensors.
 
 Source of the elements and defaults: the SDFormat specification 1.12, ``noise.sdf``.
 """
@@ -62,15 +62,15 @@ _NOISE_PARTS = (
 
 
 def _noise_of(type: str, old_type: str, **parts: float) -> Noise:  # noqa: A002 - the attribute's name
-    """Read noise in the notation of any version.
+    """Return the noise that an element of any SDF version describes.
 
-    In older files an element names its type, and plain numbers mean Gaussian noise, as in Gazebo.
+    In older files, a child element gives the type. Numbers without a type mean Gaussian noise, as in Gazebo.
     """
     return Noise(old_type or type or ("gaussian" if any(parts.values()) else "none"), **parts)
 
 
 def noise_rule() -> ElementRule:
-    """Return the rule of a noise element."""
+    """Return the rule of the element ``<noise>``."""
     return ElementRule(
         "noise",
         "noise on the value",
@@ -87,7 +87,7 @@ def noise_rule() -> ElementRule:
 
 
 def around_noise(tag: str, meaning: str, target: str = "") -> ElementRule:
-    """Return the rule of an element that contains only noise."""
+    """Return the rule of an element that contains only ``<noise>``, such as ``<x>``."""
     inside = replace(noise_rule(), get=_inner)
     return object_rule(_inner, tag, meaning, inside, default=NO_NOISE, field=target or tag)
 
@@ -97,6 +97,6 @@ def _inner(noise: Noise) -> Noise:
 
 
 def noise_xyz(tag: str, meaning: str, absent: NoiseXyz | None = NO_NOISE_XYZ) -> ElementRule:
-    """Return the rule of an element with noise for each of three components."""
+    """Return the rule of an element with noise for x, y and z; `absent` is the default."""
     parts = (around_noise("x", "along x"), around_noise("y", "along y"), around_noise("z", "along z"))
     return object_rule(NoiseXyz, tag, meaning, *parts, default=absent)

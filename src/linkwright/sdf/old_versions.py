@@ -1,8 +1,8 @@
-"""Translate SDF 1.0 to 1.2 to the elements of SDF 1.3 and later.
+"""Translates SDF 1.0 to 1.2 to the elements of SDF 1.3 and later.
 
 SDF 1.0 wrote values in attributes, ``<origin pose="1 2 0 0 0 0"/>`` and ``<box size="1 1 1"/>``, where later versions
 have elements, ``<pose>1 2 0 0 0 0</pose>`` and ``<box><size>1 1 1</size></box>``. The table of the language determines
-which value belongs to which element; a few words had other names. Source: ``1_0.convert`` of libsdformat.
+which value belongs to which element; a few elements had other names. Source: ``1_0.convert`` of libsdformat.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ def is_old(root: Element) -> bool:
 
 
 def upgraded(element: Element, rule: ElementRule) -> Element:
-    """Return an element translated to SDF 1.3; findings on its parts point to the original parts.
+    """Return an element translated to SDF 1.3, whose parts keep their positions in the source.
 
     Args:
         element: an element of SDF 1.0 to 1.2, which is not changed.
@@ -66,7 +66,7 @@ def _child(child: Element, rule: ElementRule) -> Node:
 
 
 def _value_element(element: Element, rule: ElementRule, value: str) -> Element:
-    """Return the element that replaces an attribute of another element."""
+    """Return the element that replaces an attribute of `element`; `rule` is the new element's rule."""
     new = Element(rule.tag, None, element.source, element.offset, element.origin)
     if "name" in rule.child_rules:
         new.children.append(_value_element(element, rule.child_rules["name"], value))

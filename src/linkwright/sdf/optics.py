@@ -1,4 +1,4 @@
-"""Camera models: a pinhole, and a lens with distortion.
+"""Camera models: pinhole cameras, and lenses with distortion.
 
 Source: the model ``plumb_bob`` of camera calibration (Brown, "Decentering distortion of lenses", 1966); image axes of
 REP 103: x to the right, y down, z into the image.
@@ -27,7 +27,7 @@ class Optics:
 
     Attributes:
         width, height: the size of the image in pixels.
-        fx, fy: focal lengths in pixels.
+        fx, fy: the focal lengths in pixels.
         cx, cy: the principal point, in pixels from the outer corner of the first pixel, whose centre is at 0.5.
         near, far: the limits of the visible distance along the optical axis, in m.
         distortion: the distortion of the lens; None if there is none.
@@ -45,7 +45,7 @@ class Optics:
 
     @cached_property
     def rays(self) -> Array:
-        """The direction of each pixel, x, y, z with z = 1, shape (height * width, 3)."""
+        """The direction of each pixel, with x, y and z = 1, shape (height * width, 3)."""
         across = (np.arange(self.width) + 0.5 - self.cx) / self.fx
         down = (np.arange(self.height) + 0.5 - self.cy) / self.fy
         x: Array
@@ -57,7 +57,7 @@ class Optics:
         return rays
 
     def directions(self, axes: Array) -> Array:
-        """Return the direction of each pixel in other axes, shape (height * width, 3), as 32-bit numbers.
+        """Return the direction of each pixel in other axes, shape (height * width, 3), float32.
 
         Args:
             axes: right, down and forwards, as columns.
@@ -91,8 +91,8 @@ class Optics:
         """The six planes of the view frustum, for square pixels without distortion.
 
         Returns:
-            Their outward unit normals in the axes right, down and forwards, shape (6, 3), and the offsets of the planes
-            along the normals, in m, shape (6, 1).
+            The outward unit normals of the planes in the axes right, down and forwards, shape (6, 3), and the offsets
+            of the planes along their normals, in m, shape (6, 1).
         """
         left, right = -self.cx / self.fy, (self.width - self.cx) / self.fy
         top, bottom = -self.cy / self.fy, (self.height - self.cy) / self.fy
@@ -116,7 +116,7 @@ class Optics:
 
     @cached_property
     def pinhole(self) -> Optics:
-        """The optics of a pinhole camera whose image covers this one."""
+        """The optics of a pinhole camera whose image covers the image of this camera."""
         if self.is_pinhole:
             return self
         x, y = self.rays[:, 0], self.rays[:, 1]
@@ -136,12 +136,12 @@ class Optics:
 
     @cached_property
     def sources(self) -> tuple[Array, Array]:
-        """For each pixel of this image, the fractional column and row of the corresponding point in `pinhole`."""
+        """The column and row in the image of `pinhole` of each pixel, as fractional pixel indices."""
         hole = self.pinhole
         return self.rays[:, 0] * hole.fx + hole.cx - 0.5, self.rays[:, 1] * hole.fy + hole.cy - 0.5
 
     def project(self, points: Array) -> Array:
-        """Project points, shape (n, 3) with z > 0, to columns and rows in pixels, shape (n, 2)."""
+        """Return the columns and rows in pixels, shape (n, 2), of points, shape (n, 3) with z > 0."""
         x, y = points[:, 0] / points[:, 2], points[:, 1] / points[:, 2]
         if self.distortion is not None:
             x, y = distorted(self.distortion, x, y)
@@ -166,7 +166,7 @@ def optics_of(camera: Camera) -> Optics:
 
 
 def distorted(lens: Distortion, x: Array, y: Array) -> tuple[Array, Array]:
-    """Apply the distortion of a lens to x and y of a pinhole camera, both at a focal length of 1."""
+    """Return x and y at z = 1 after the distortion of a lens."""
     square = x * x + y * y
     radial = 1 + square * (lens.k1 + square * (lens.k2 + square * lens.k3))
     across = x * radial + 2 * lens.p1 * x * y + lens.p2 * (square + 2 * x * x)
@@ -175,10 +175,13 @@ def distorted(lens: Distortion, x: Array, y: Array) -> tuple[Array, Array]:
 
 
 def undistorted(lens: Distortion, x: Array, y: Array) -> tuple[Array, Array]:
-    """Invert `distorted` by fixed-point iteration."""
+    """Return x and y at z = 1 before the distortion of a lens, found by fixed-point iteration.
+
+    The arguments are returned where the iteration does not converge.
+    """
     across, down = x.copy(), y.copy()
     for _ in range(_TURNS):
         there = distorted(lens, across, down)
         across, down = across + (x - there[0]), down + (y - there[1])
-    wide = (np.abs(across) < 10) & (np.abs(down) < 10)  # also false for NaN
+    wide = (np.abs(across) < 10) & (np.abs(down) < 10)  # The comparison is false for NaN.
     return np.where(wide, across, x), np.where(wide, down, y)

@@ -1,4 +1,4 @@
-"""``<physics>``: the time step and the solver of a physics engine.
+"""The element ``<physics>``: the time step and the solver of a physics engine.
 
 Source of the elements and defaults: the SDFormat specification 1.12, ``physics.sdf``.
 """
@@ -15,16 +15,16 @@ from linkwright.xmltree import Element
 
 @dataclass(frozen=True, slots=True)
 class Physics:
-    """The time step and solver of the physics engine.
+    """The settings of a physics engine.
 
     Attributes:
         type: the engine for which the file was written.
-        default: whether to use this one if there are several.
+        default: whether to use these settings if there are several.
         max_step_size: the step in seconds.
         real_time_factor: the maximum number of simulated seconds per real second.
         real_time_update_rate: steps per real second in Gazebo classic; 0 for as many as possible.
         max_contacts: the maximum number of contact points between two shapes.
-        gravity: up to SDF 1.5, in m/s2; None if not given.
+        gravity: the gravity in m/s2, up to SDF 1.5; None if not given.
     """
 
     name: str = "default_physics"

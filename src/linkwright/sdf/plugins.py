@@ -1,4 +1,4 @@
-"""``<plugin>``: a library for the simulator, with parameters of any form."""
+"""The element ``<plugin>``: a library for the simulator, with parameters of any form."""
 
 from __future__ import annotations
 
@@ -47,10 +47,11 @@ def library_name(filename: str) -> str:
 
 
 def original_library(class_name: str) -> str:
-    """Return the library that defines a class.
+    """Return the library that defines a class, derived from the namespace of the class.
 
-    It is ``ign_ros2_control-system`` for the namespace ``ign_ros2_control``. Vendors ship copies of libraries under
-    their own names, ``franka_ign_ros2_control-system``, that keep the class.
+    For example, it is ``ign_ros2_control-system`` for the namespace ``ign_ros2_control``, and empty for a class without
+    a namespace. Vendors ship copies of libraries under their own names, such as ``franka_ign_ros2_control-system``,
+    that keep the class.
     """
     namespace, separator, _ = class_name.strip().partition("::")
     return f"{namespace}-system" if separator else ""

@@ -1,8 +1,8 @@
-"""``<population>``: copies of a model, distributed over a box or a cylinder.
+"""The element ``<population>``: copies of a model, distributed over a box or a cylinder.
 
 Source of the elements: the SDFormat specification 1.12, ``population.sdf``; of the positions and names, Gazebo
-classic's ``Population.cc``. There, `random` and `uniform` give other positions with each start; here the positions are
-always the same.
+classic's ``Population.cc``. In Gazebo classic, `random` and `uniform` give other positions with each start; here the
+positions are always the same.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _GOLDEN_ANGLE = pi * (3 - sqrt(5))
 
 @dataclass(frozen=True, slots=True)
 class Distribution:
-    """The distribution of models; `rows`, `columns` and `step`, in metres, describe a grid."""
+    """The distribution of models; `rows`, `columns` and `step` (in metres) apply to a grid."""
 
     type: str = "random"
     rows: int = 1
@@ -45,10 +45,10 @@ class Population:
 
     Attributes:
         pose: the pose of the box's centre, of the centre of the cylinder's base, or of the grid.
-        models: the repeated model; only the first counts.
-        count: the number of copies, unless they form a grid.
-        box: the box that contains them; None for no box.
-        cylinder: the cylinder that contains them; None for no cylinder.
+        models: the repeated model; only the first is used.
+        count: the number of copies, unless the copies form a grid.
+        box: the box that contains the copies; None if there is no box.
+        cylinder: the cylinder that contains the copies; None if there is no cylinder.
     """
 
     name: str
@@ -62,9 +62,9 @@ class Population:
 
 
 def models_of(population: Population) -> Iterator[Model]:
-    """Yield the models of a population, ``NAME_clone_0`` and so on.
+    """Yield the models of a population, which are named ``NAME_clone_0`` and so on.
 
-    A population without volume has none, as in Gazebo.
+    As in Gazebo, a population without a volume yields nothing, unless it is a grid.
     """
     if not population.models:
         return
@@ -78,7 +78,7 @@ def models_of(population: Population) -> Iterator[Model]:
 
 
 def _half(population: Population) -> Vector3:
-    """Return the offset from the corner of the volume to its pose, which Gazebo does not rotate."""
+    """Return the offset from the corner of the volume to its pose; Gazebo does not rotate this offset."""
     distribution = population.distribution
     if distribution.type == "grid":
         x, y, _ = distribution.step

@@ -1,4 +1,4 @@
-"""``<pose>``: a pose as written, with the frame to which it is relative."""
+"""The element ``<pose>``: a pose as written, with the frame to which it is relative."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ class RawPose:
 
     Attributes:
         pose: the pose in the frame named by `relative_to`.
-        relative_to: a frame, link, joint or model; empty for the default: the enclosing element, or for a joint its
-            child link.
+        relative_to: a frame, link, joint or model; empty for the default, which is the enclosing element, or for a
+            joint its child link.
     """
 
     pose: Pose = IDENTITY_POSE

@@ -1,7 +1,7 @@
-"""Read an SDF document into worlds and models, and report all of its errors as findings.
+"""Reads an SDF document into worlds and models, and reports all of its errors as findings.
 
 Like libsdformat, the reader continues after an error if it can: a missing value has its default, and an invalid value
-counts as missing. If libsdformat refuses the file at that point, the finding is an error.
+counts as missing. If libsdformat rejects the file at that point, the finding is an error.
 """
 
 from __future__ import annotations
@@ -110,7 +110,7 @@ OPEN = frozenset({"plugin", "gui", "state"})
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """The worlds, models and findings of a document.
+    """The parsed content of a document, and the findings.
 
     Attributes:
         sdf: the parsed document; None if it is not SDF.
@@ -122,7 +122,7 @@ class Reading:
 
 
 def read(document: Document) -> Reading:
-    """Read an SDF document; its content never raises an error."""
+    """Read an SDF document; errors in its content are reported as findings and never raised."""
     report = SdfReport()
     root = document.root
     if root.tag != "sdf" and not (root.tag == _OLD_ROOT and "version" in root.attributes):
@@ -140,7 +140,10 @@ def read(document: Document) -> Reading:
 
 
 def read_element(element: Element, rule: ElementRule, report: SdfReport) -> Any:
-    """Read an element of limited depth, and report all mistakes in it."""
+    """Read an element, and report all mistakes in it.
+
+    Check the element with `is_too_deep` first.
+    """
     found = reader_of(rule, NEWEST).read(element, element, report)
     flat = _is_flat(element)
     known = list(_known(element, rule))
@@ -157,7 +160,7 @@ def read_element(element: Element, rule: ElementRule, report: SdfReport) -> Any:
 
 
 def is_too_deep(root: Element, report: SdfReport) -> bool:
-    """Return whether an element is nested too deeply to be read, which is also reported."""
+    """Return whether an element is nested too deeply to be read, and report it if so."""
     deep = _too_deep(root)
     if deep is not None:
         message = phrase("elements are nested more than {count} deep", count=_DEEPEST)
@@ -178,7 +181,7 @@ def _explain_root(root: Element, report: SdfReport) -> None:
 def _check_version(root: Element, report: SdfReport) -> None:
     written = root.attributes.get("version")
     if written is None:
-        return  # the reader reports it
+        return  # The reader reports a missing version.
     found = _VERSION(written.strip())
     if found and int(found[1]) <= NEWEST[1]:
         return
@@ -188,7 +191,7 @@ def _check_version(root: Element, report: SdfReport) -> None:
 
 
 def _too_deep(root: Element) -> Element | None:
-    """Return the first element that is nested too deeply, or None."""
+    """Return an element that is nested too deeply, or None if there is none."""
     waiting = [(root, 0)]
     while waiting:
         element, depth = waiting.pop()
@@ -199,7 +202,10 @@ def _too_deep(root: Element) -> Element | None:
 
 
 def _known(root: Element, rule: ElementRule) -> Iterator[tuple[Element, ElementRule]]:
-    """Yield an element and its known descendants, each with its rule, in document order."""
+    """Yield an element and its known descendants in document order, each with its rule.
+
+    Elements whose content other programs define are left out.
+    """
     waiting = [(root, rule)]
     while waiting:
         element, rule = waiting.pop()
@@ -212,32 +218,32 @@ def _known(root: Element, rule: ElementRule) -> Iterator[tuple[Element, ElementR
 
 
 def _is_let_be(element: Element, rule: ElementRule) -> bool:
-    """Return whether an unknown element is acceptable.
+    """Return whether an unknown element is not reported.
 
-    It is if it has a prefix, or is an SDF element without effect here.
+    This applies to an element with a prefix, and to an SDF element that has no effect here.
     """
     tag = element.tag
     return ":" in tag or tag in WITHOUT_EFFECT.get(rule.tag, ()) or (tag == _FRAME and POSE in rule.children)
 
 
 def _is_flat(root: Element) -> bool:
-    """Return whether names may contain '::'.
+    """Return whether names may contain '::' in the file's version.
 
-    Up to SDF 1.7, included models became part of the including one.
+    Up to SDF 1.7, the parts of an included model became parts of the including model, with such names.
     """
     return _minor(root) <= _NEWEST_FLAT_MINOR
 
 
 def _minor(root: Element) -> int:
-    """Return the minor number of a file's version; for an unknown version, that of the newest one."""
+    """Return the minor number of a file's SDF version; the newest minor number for an invalid version."""
     found = _VERSION(root.attributes.get("version", "").strip())
     return NEWEST[1] if found is None else int(found[1])
 
 
 def _check_names(element: Element, report: SdfReport, *, flat: bool) -> None:
-    """Report duplicate names among targets of poses, and among shapes and sensors of one kind.
+    """Report siblings with the same name, and reserved names.
 
-    Names with a special meaning in poses are reported as well.
+    Links, joints, frames and models share one namespace. Visuals, collisions, sensors and lights each have their own.
     """
     first: dict[tuple[str, str], Element] = {}
     for child in element.elements():

@@ -1,4 +1,4 @@
-"""Check references by name in joints and poses."""
+"""Checks references by name in joints and poses."""
 
 from __future__ import annotations
 
@@ -18,7 +18,10 @@ from linkwright.xmltree import Element
 
 
 def check_references(sdf: Sdf) -> list[Diagnostic]:
-    """Return the findings on references in a file with its includes resolved, each once."""
+    """Return the findings on references by name, without duplicates.
+
+    The includes of the file must have been resolved.
+    """
     found: dict[tuple[object, str], Diagnostic] = {}
     inserted = (model for world in sdf.worlds for state in world.states for model in state.insertions.models)
     owners: tuple[World | Model, ...] = (*sdf.worlds, *sdf.models, *inserted)
@@ -46,7 +49,7 @@ def _check(owner: World | Model, frames: Frames) -> Iterator[Diagnostic]:
             *link.lights,
         )
         for part in parts:
-            # libsdformat resolves these references only when needed, and continues if they are missing.
+            # libsdformat resolves these references only when needed, and continues if a frame is missing.
             yield from (
                 diagnostic.with_changes(severity=Severity.WARNING)
                 for diagnostic in _pose(part.pose, part.element, frames)
@@ -102,7 +105,7 @@ def _pose(pose: RawPose | None, element: Element | None, frames: Frames) -> Iter
 
 
 def _circles(parts: tuple[Frame | Link | Joint | Model, ...], frames: Frames) -> Iterator[Diagnostic]:
-    """Yield findings for the cycles of frames whose poses are relative to each other, each at its first frame."""
+    """Yield a finding for each cycle of frames whose poses are relative to each other."""
     reported: set[frozenset[str]] = set()
     for part in parts:
         circle = _circle_of(part.name, frames)
@@ -120,7 +123,7 @@ def _circles(parts: tuple[Frame | Link | Joint | Model, ...], frames: Frames) ->
 
 
 def _circle_of(name: str, frames: Frames) -> tuple[str, ...]:
-    """Return the cycle to which a frame's chain of references leads; empty if there is none."""
+    """Return the cycle of frames on which the pose of a frame depends; empty if there is none."""
     try:
         frames.pose(name)
     except FrameError as error:
@@ -129,7 +132,7 @@ def _circle_of(name: str, frames: Frames) -> tuple[str, ...]:
 
 
 def _is_known(name: str, frames: Frames) -> bool:
-    """Return whether a frame exists, or may exist in a model whose failed include has been reported."""
+    """Return whether a frame exists, or may exist in an include that cannot be resolved."""
     if name in frames:
         return True
     head = name.partition(SEPARATOR)[0]

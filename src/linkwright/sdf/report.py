@@ -1,4 +1,4 @@
-"""Messages about SDF elements, from their rules and their text."""
+"""Messages about errors in SDF elements, created from the rules of the elements."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ NEWEST = (1, 12)
 
 
 def described(element: Element) -> Phrase:
-    """Return a description of an element for messages: ``link 'chassis'``, ``<pose>``."""
+    """Return a description of an element for messages, such as ``link 'chassis'`` or ``<pose>``."""
     name = element.attributes.get("name")
     if name is None:
         return phrase("<{tag}>", tag=element.tag)
@@ -39,7 +39,7 @@ def described(element: Element) -> Phrase:
 
 
 class SdfReport(Findings):
-    """Collects the findings of one reading, and formulates messages about the mistakes in elements."""
+    """Collects the findings on one document, and formulates messages about mistakes in elements."""
 
     __slots__ = ("_misspelt", "is_of_classic")
 
@@ -50,7 +50,7 @@ class SdfReport(Findings):
         self._misspelt: list[Element] = []
 
     def missing_attribute(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> None:
-        """Report a missing required attribute or text."""
+        """Report a missing required attribute, or an empty element whose text is required."""
         if attribute is rule.text:
             message = phrase("<{tag}> of {owner} is empty", tag=rule.tag, owner=described(owner))
             self.error("SDF120", message, element, hint=phrase("write <{tag}>...</{tag}>", tag=rule.tag))
@@ -68,10 +68,10 @@ class SdfReport(Findings):
         self.error("SDF120", message, element, hint=hint)
 
     def malformed(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> Any:
-        """Report an invalid value; the default is used in its place.
+        """Report an invalid value, and return the value to use, or ``UNREADABLE`` for the default.
 
-        For a number or a vector, libsdformat reads the beginning of the text and ignores the rest, so the finding is a
-        warning.
+        For a number or a vector, libsdformat reads the beginning of the text and ignores the rest. This value is
+        returned, and the finding is a warning.
         """
         inside = attribute is rule.text
         text = element.text().strip() if inside else element.attributes[attribute.name]
@@ -91,11 +91,11 @@ class SdfReport(Findings):
         return UNREADABLE
 
     def too_new(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> None:
-        """Do nothing: files of all versions are read with the newest rules, so no element is too new."""
+        """Raise an AssertionError: all files are read with the newest rules, so no element is too new."""
         raise AssertionError(f"{rule.tag} {attribute.name} is for some versions only")
 
     def missing_child(self, element: Element, rule: ElementRule, child: ElementRule, owner: Element) -> None:
-        """Report a missing required child."""
+        """Report a missing required child element."""
         candidates = [child for child in element.elements() if child.tag not in rule.child_rules]
         like = nearest(child.tag, [candidate.tag for candidate in candidates], limit=1)
         misspelt = next((candidate for candidate in candidates if candidate.tag in like), None)
@@ -111,11 +111,11 @@ class SdfReport(Findings):
         )
 
     def empty_choice(self, element: Element, rule: ElementRule, owner: Element) -> None:
-        """Do nothing: SDF has no element whose first child determines its meaning."""
+        """Raise an AssertionError: in SDF, no element's first child determines its meaning."""
         raise AssertionError(rule.tag)
 
     def unknown_choice(self, child: Element, rule: ElementRule, owner: Element) -> None:
-        """Do nothing: SDF has no element whose first child determines its meaning."""
+        """Raise an AssertionError: in SDF, no element's first child determines its meaning."""
         raise AssertionError(rule.tag)
 
     def unknown_elements(self, elements: Sequence[Element], rule: ElementRule, harmless: Sequence[bool]) -> None:
@@ -124,9 +124,9 @@ class SdfReport(Findings):
         Misspelt and misplaced elements are reported separately, the others together.
 
         Args:
-            elements: the elements.
+            elements: the unknown elements.
             rule: the rule of the parent.
-            harmless: for each element, whether reading it would change nothing; such an element is reported as
+            harmless: for each element, whether reading it would make no difference; such an element is reported as
                 information, unless it is misspelt.
         """
         known = [child.tag for child in rule.children]
@@ -164,7 +164,7 @@ class SdfReport(Findings):
         self._add(severity, "SDF150", message, elements[0], None, hint, ())
 
     def reserved(self, element: Element, name: str) -> None:
-        """Report a reserved name."""
+        """Report an element whose name is reserved."""
         message = phrase("'{name}' cannot be the name of a {kind}", name=name, kind=term(element.tag))
         if element.tag == name == WORLD:
             hint = phrase("gz rejects this name, which Gazebo classic accepts; use a name such as 'default'")
@@ -174,7 +174,7 @@ class SdfReport(Findings):
         self.error("SDF111", message, element, "name", hint=hint)
 
     def twice(self, element: Element, first: Element) -> None:
-        """Report siblings with the same name."""
+        """Report an element that has the same name as an earlier sibling."""
         notes: Sequence[Note] = (Note(phrase("first defined here"), first.span()),)
         message = phrase("two elements in the same place are named '{name}'", name=element.attributes.get("name", ""))
         if element.tag == first.tag:
@@ -188,7 +188,7 @@ class SdfReport(Findings):
 
 
 def _filled(text: str, count: int) -> str:
-    """Return numbers padded with 0 for missing ones; empty if the text is invalid for another reason."""
+    """Return a text with zeros appended for missing numbers; empty if the text is invalid otherwise."""
     try:
         found = numbers(text)
     except ValueError:
@@ -197,7 +197,10 @@ def _filled(text: str, count: int) -> str:
 
 
 def _place(element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> Phrase:
-    """Return a description of a value's place: ``<mass> of link 'arm'``, ``'type' of joint 'elbow'``."""
+    """Return a description of the location of a value.
+
+    Examples are ``<mass> of link 'arm'`` and ``'type' of joint 'elbow'``.
+    """
     if "name" in element.attributes:
         return phrase("'{name}' of {owner}", name=attribute.name, owner=described(element))
     place = phrase("<{tag}>", tag=rule.tag)
@@ -207,7 +210,7 @@ def _place(element: Element, rule: ElementRule, attribute: AttributeRule, owner:
 
 
 def _explained(place: Phrase, text: str, attribute: AttributeRule, element: Element) -> tuple[Phrase, Phrase | None]:
-    """Return the message and the hint for a text that is not a value of the attribute's type."""
+    """Return the message and the hint (or None) for a text that is not a valid value of an attribute."""
     values = {"place": place, "value": text}
     if attribute.type in COUNTS:
         return _miscounted(values, text, COUNTS[attribute.type], element)

@@ -1,4 +1,7 @@
-"""Resolve URIs of models and their files: ``model://``, ``package://``, ``file://``, paths, Fuel addresses."""
+"""Resolves URIs of models and their files.
+
+These are ``model://``, ``package://`` and ``file://`` URIs, paths, and addresses on Fuel.
+"""
 
 from __future__ import annotations
 
@@ -58,9 +61,9 @@ class Missing(NamedTuple):
 
     Attributes:
         reason: the reason.
-        hint: the hint of the message.
-        severity: the severity of a finding about it; information if Gazebo can probably find the resource, because it
-            downloads models or finds them in folders that this machine does not have.
+        hint: the hint; None if there is none.
+        severity: the severity of a finding about the URI; information if Gazebo can probably find the resource, because
+            it downloads models or finds them in folders that this machine does not have.
     """
 
     reason: Phrase
@@ -98,7 +101,7 @@ class ResourceFinder:
         self._near: dict[Path, tuple[Path, ...]] = {}
 
     def file(self, address: str, beside: Path) -> Path | Missing:
-        """Return the existing file or folder of a URI, or why there is none.
+        """Return the existing file or folder of a URI, or the reason why there is none.
 
         Args:
             address: the URI as written.
@@ -123,14 +126,20 @@ class ResourceFinder:
         return path if path.exists() else _no_file(path)
 
     def model(self, address: str, beside: Path) -> Path | Missing:
-        """Return the SDF file of a model's URI: the file itself, or the newest one in its folder."""
+        """Return the SDF file of a model's URI, or the reason why there is none.
+
+        The URI names the file itself, or a folder, whose newest readable file is used.
+        """
         found = self.file(address, beside)
         if isinstance(found, Missing) or not found.is_dir():
             return found
         return model_file(found)
 
     def models(self) -> dict[str, Path]:
-        """Return all models on the search path, as folders by their names; the first folder of a name counts."""
+        """Return the folders of all models on the search path, by name.
+
+        If several folders have the same name, the first is returned.
+        """
         found: dict[str, Path] = {}
         for folder in self._folders:
             with suppress(OSError):
@@ -140,9 +149,10 @@ class ResourceFinder:
         return found
 
     def worlds(self) -> dict[str, Path]:
-        """Return all worlds on the search path, as files by their names without suffix; the first one counts.
+        """Return the files of all worlds on the search path, by name without suffix.
 
-        They are searched for in the folders of models, and in the folders ``worlds`` of these and of packages.
+        If several files have the same name, the first is returned. The search includes the folders of models, and the
+        folders ``worlds`` in these folders and in packages.
         """
         found: dict[str, Path] = {}
         shares = self._packages.packages().values()
@@ -159,7 +169,7 @@ class ResourceFinder:
         return found
 
     def world(self, name: str) -> Path | None:
-        """Return the file of a world, or None.
+        """Return the file of a world, or None if there is none.
 
         The name is a path, a ``file://`` address or a name on the search path.
         """
@@ -172,7 +182,7 @@ class ResourceFinder:
 
     @cached_property
     def _folders(self) -> tuple[Path, ...]:
-        """The existing folders in which models are searched for, in order."""
+        """The existing folders of the search path for models, in order."""
         return tuple(dict.fromkeys(path for path in self._places() if path.is_dir()))
 
     def _places(self) -> Iterator[Path]:
@@ -239,9 +249,10 @@ class ResourceFinder:
         return Missing(reason, hint, Severity.INFO)
 
     def _cached(self, address: str) -> Path | Missing:
-        """Return the folder of a Fuel address in gz's cache.
+        """Return the folder of a Fuel address in gz's cache, or the reason why there is none.
 
-        It is ``HOST/OWNER/models/NAME/VERSION``, in lower case.
+        The folder is ``HOST/OWNER/models/NAME/VERSION``, in lower case. For ``sun`` and ``ground plane``, our own
+        models are used if the cache does not have them.
         """
         parts = [unquote(part) for part in urlsplit(address).path.split("/") if part]
         host = urlsplit(address).netloc.lower()
@@ -277,9 +288,9 @@ def _is_model(folder: Path) -> bool:
 
 
 def _around(folder: Path) -> tuple[Path, ...]:
-    """Return a folder and its parents.
+    """Return a folder and its parents, up to the folder of its package.
 
-    They end at the folder of its package, or at one parent if it is not in a package.
+    A folder outside of packages is returned with one parent.
     """
     package = enclosing_package(folder)
     around = (folder, *folder.parents)
@@ -288,9 +299,9 @@ def _around(folder: Path) -> tuple[Path, ...]:
 
 
 def model_file(folder: Path) -> Path | Missing:
-    """Return the SDF file in a model's folder.
+    """Return the SDF file in a model's folder, or the reason why there is none.
 
-    It is the newest readable one in ``model.config``, or else ``model.sdf``.
+    It is the newest file in ``model.config`` whose version can be read, or else ``model.sdf``.
     """
     newest: tuple[int, Path] | None = None
     with suppress(LinkwrightError):
@@ -310,14 +321,15 @@ def model_file(folder: Path) -> Path | Missing:
 
 
 def _holds_world(file: Path) -> bool:
-    """Return whether an SDF file contains a world."""
+    """Return whether the bytes of a file contain the tag of a world."""
     return b"<world" in file.read_bytes()
 
 
 def exported_folders(share: Path, attribute: str) -> Iterator[Path]:
     """Yield the folders that a package exports to Gazebo in its ``package.xml``.
 
-    ``${prefix}`` is the share folder of the package.
+    `attribute` is the attribute of ``<gazebo_ros>`` that lists them. ``${prefix}`` in a folder is the share folder of
+    the package.
     """
     text = ""
     with suppress(OSError):
@@ -335,7 +347,8 @@ def exported_folders(share: Path, attribute: str) -> Iterator[Path]:
 def hooked_folders(share: Path) -> Iterator[Path]:
     """Yield the folders that a package's environment hooks add to `SEARCH_VARIABLES`.
 
-    The templates of hooks in the package's sources are read, too. Source: ``ament_environment_hooks`` and the ``.dsv``
+    The templates of hooks in the sources of the package are also read. Source: ``ament_environment_hooks`` and the
+    ``.dsv``
     files of ament: ``prepend-non-duplicate;VARIABLE;PATH``.
     """
     for file in sorted((*share.glob("*hook*/*.*"), *share.glob("environment/*.dsv"))):
@@ -347,7 +360,10 @@ def hooked_folders(share: Path) -> Iterator[Path]:
 
 
 def _version_in(place: Path, rest: list[str]) -> Path | None:
-    """Return the folder of a cached version, with the path in it; ``tip`` or no version means the newest."""
+    """Return the folder or file in a cached model that the rest of a Fuel address names.
+
+    ``tip`` or no version means the newest one. None is returned if no version is cached.
+    """
     try:
         versions = sorted((int(path.name), path) for path in place.iterdir() if path.name.isdigit())
     except OSError:
@@ -362,22 +378,22 @@ def _version_in(place: Path, rest: list[str]) -> Path | None:
 
 
 def _kind(path: Path) -> str:
-    """Return the kind of a file, which limits the names that are suggested."""
+    """Return the suffix of a file, in which worlds and models are equal, for suggesting similar files."""
     suffix = path.suffix.lower()
     return ".sdf" if suffix == ".world" else suffix
 
 
 def _is_ours(folder: Path) -> bool:
-    """Return whether a folder is one of our own models.
+    """Return whether a folder belongs to the models that are part of the program.
 
-    They replace some of Gazebo's models with fewer files.
+    These models replace some of Gazebo's models, but have fewer files.
     """
     shipped = shipped_folder()
     return folder.is_relative_to(_SHIPPED) or (shipped is not None and folder.absolute().is_relative_to(shipped))
 
 
 def _in_other_case(path: Path) -> Path | None:
-    """Return a file whose name differs from a missing file's name only in case, or None."""
+    """Return a file whose name differs from a missing file's name only in case, or None if there is none."""
     with suppress(OSError):
         return next((entry for entry in path.parent.iterdir() if entry.name.casefold() == path.name.casefold()), None)
     return None

@@ -1,4 +1,4 @@
-"""``<state>``: the state of a world that Gazebo classic saved.
+"""The saved state of a world: ``<state>``, which Gazebo classic writes.
 
 A saved world contains each pose twice: in the models as they were first written, and in ``<state>``, which the
 simulator uses. Poses in a state are in the frame of the world.
@@ -17,7 +17,10 @@ from linkwright.sdf.worlds import World
 
 
 def as_saved(world: World) -> World:
-    """Return a world, with its includes resolved, in its last saved state; unchanged if it has none."""
+    """Return a world with its last saved state applied; unchanged if there is no saved state.
+
+    The includes of the world must have been resolved.
+    """
     if not world.states:
         return world
     state = world.states[-1]
@@ -38,11 +41,14 @@ def _place(frames: Frames, model: Model) -> Transform:
     try:
         return frames.pose(model.name)
     except FrameError:
-        return transform_of(model.pose.pose)  # the check of frames reports the error
+        return transform_of(model.pose.pose)  # `check` reports the missing frame.
 
 
 def _restored(model: Model, state: ModelState | None, place: Transform) -> Model:
-    """Return a model in its saved state; `place` is its pose in the world if it has no state."""
+    """Return a model with its saved state applied.
+
+    `place` is the pose of the model in the world, which applies if the state does not contain a pose.
+    """
     if state is None:
         return model
     if state.pose is not None:

@@ -1,7 +1,7 @@
-"""Material scripts: the materials of Gazebo by their names, and ``.material`` files of models.
+"""Material scripts: Gazebo's own materials by name, and ``.material`` files of models.
 
-Gazebo classic's renderer, Ogre, has materials in scripts of its own language; only their colours and the first image
-are read here. Colours that an SDF file gives next to the name of a material take precedence over those of the script.
+The renderer of Gazebo classic, Ogre, has materials in scripts of its own language; only their colours and the first
+image are read here. Colours in the SDF file take precedence over the colours of the script.
 
 Source: ``gazebo.material`` of Gazebo classic, and Ogre's manual, "Material scripts".
 """
@@ -24,7 +24,10 @@ from linkwright.sdf.worlds import Sdf
 
 
 class Look(NamedTuple):
-    """The colours of a script's material, None if missing, and its texture, empty if missing."""
+    """The colours and the texture of a material in a script.
+
+    Missing colours are None, and a missing texture is empty.
+    """
 
     ambient: Color | None = None
     diffuse: Color | None = None
@@ -94,12 +97,12 @@ _COLORS = ("ambient", "diffuse", "specular", "emissive")
 
 
 def gazebo_look(name: str) -> Look | None:
-    """Return the look of one of Gazebo's materials, such as ``Gazebo/Grey``; None for another name."""
+    """Return the look of one of Gazebo's materials, such as ``Gazebo/Grey``; None for other names."""
     return _NAMED.get(name.removeprefix(_PREFIX)) if name.startswith(_PREFIX) else None
 
 
 def with_look(material: Material, look: Look) -> Material:
-    """Return a material with missing colours and a missing texture completed from a script."""
+    """Return a material in which a script's look replaces missing colours and a missing texture."""
     pbr = material.pbr
     if look.image and pbr is None:
         pbr = Pbr(metal=Workflow(albedo_map=look.image))
@@ -114,10 +117,10 @@ def with_look(material: Material, look: Look) -> Material:
 
 
 def with_scripts(sdf: Sdf, finder: ResourceFinder) -> Sdf:
-    """Return a file, with its includes resolved, whose materials have the looks of their scripts.
+    """Return a file whose materials are completed from the scripts that they name.
 
     Args:
-        sdf: the file.
+        sdf: the file, with its includes resolved.
         finder: the finder of scripts and images.
     """
     library = _Library(finder)
@@ -166,7 +169,10 @@ class _Library:
 
 
 def _image(name: str, script: Path, places: Mapping[str, Path]) -> str:
-    """Return the path of a texture that a script names, in the folders of the material or near the script."""
+    """Return the URI of a texture that a script names; empty if there is no such file.
+
+    The texture is searched for in the folders of the material, and near the script.
+    """
     if name:
         for uri, place in places.items():
             if (place / name).is_file():
@@ -186,7 +192,10 @@ def _scripts(place: Path) -> list[Path]:
 
 
 def read_script(text: str) -> dict[str, Look]:
-    """Parse an Ogre script into materials by their names; the first value of each property counts."""
+    """Return the looks of the materials in an Ogre script, by name.
+
+    The first value of each property is used.
+    """
     found: dict[str, Look] = {}
     current = ""
     depth = 0
@@ -209,7 +218,7 @@ def _with_word(look: Look, word: str, values: list[str]) -> Look:
     if word in _COLORS and getattr(look, word) is None:
         with suppress(ValueError):
             numbers = [float(value) for value in values[:4]]
-            # The last of four or five numbers of a specular colour is the shininess.
+            # In a specular colour, the last of four or five numbers is the shininess.
             alpha = numbers[3] if len(numbers) == 4 and (word != "specular" or len(values) == 5) else 1.0
             if len(numbers) >= 3:
                 colours: dict[str, Any] = {word: (numbers[0], numbers[1], numbers[2], alpha)}
@@ -218,7 +227,7 @@ def _with_word(look: Look, word: str, values: list[str]) -> Look:
 
 
 def _lines(text: str) -> Iterator[list[str]]:
-    """Yield the words of each line that is not empty, with braces as separate lines."""
+    """Yield the tokens of each nonempty line, without comments; each brace is a separate line."""
     words: list[str] = []
     for match in _WORDS.finditer(text):
         word = match[0]

@@ -1,4 +1,4 @@
-"""``<sensor>``: sensors with their ranges and noise.
+"""The element ``<sensor>``: sensors with their ranges and noise.
 
 Source of the elements and defaults: the SDFormat specification 1.12, ``sensor.sdf`` and the files of each kind.
 """
@@ -35,7 +35,7 @@ class Sweep:
 
     @property
     def step(self) -> float:
-        """The angle from one ray to the next; 0 for a single ray."""
+        """The angle in radians from one ray to the next; 0 for a single ray."""
         return (self.max_angle - self.min_angle) / (self.count - 1) if self.count > 1 else 0.0
 
 
@@ -50,7 +50,10 @@ class Reach:
 
 @dataclass(frozen=True, slots=True)
 class Lidar:
-    """A lidar, which looks along x of its frame; horizontal angles are about z, vertical angles positive upwards."""
+    """A lidar, which looks along x of its frame.
+
+    Horizontal angles are about z, and vertical angles are positive upwards.
+    """
 
     horizontal: Sweep = Sweep()
     vertical: Sweep = Sweep(1)
@@ -64,9 +67,9 @@ class Imu:
     """An inertial measurement unit (IMU).
 
     Attributes:
-        angular_velocity: noise in rad/s.
-        linear_acceleration: noise in m/s2.
-        enable_orientation: whether it also measures its orientation.
+        angular_velocity: the noise in rad/s.
+        linear_acceleration: the noise in m/s2.
+        enable_orientation: whether the IMU also measures its orientation.
         localization: the reference of the orientation: ``CUSTOM``, ``NED``, ``ENU``, ``NWU``, ``GRAV_UP`` or
             ``GRAV_DOWN``.
         custom_rpy: roll, pitch, yaw of the custom frame, in radians, in the frame `custom_parent_frame`.
@@ -82,7 +85,7 @@ class Imu:
 
 @dataclass(frozen=True, slots=True)
 class ContactSensor:
-    """A contact sensor: its collision, and the topic of its messages."""
+    """The settings of a contact sensor: the name of a collision, and the topic."""
 
     collision: str = "__default__"
     topic: str = "__default_topic__"
@@ -90,7 +93,7 @@ class ContactSensor:
 
 @dataclass(frozen=True, slots=True)
 class Navsat:
-    """A satellite receiver: horizontal and vertical noise of positions in metres and of velocities in m/s."""
+    """A satellite receiver, with noise of positions in metres and of velocities in m/s."""
 
     horizontal_position: Noise = NO_NOISE
     vertical_position: Noise = NO_NOISE
@@ -105,8 +108,8 @@ class ForceTorque:
     Attributes:
         frame: the frame of the measurement: ``child``, ``parent`` or ``sensor``.
         measure_direction: ``child_to_parent`` or ``parent_to_child``.
-        force: noise in newtons.
-        torque: noise in newton metres.
+        force: the noise in newtons.
+        torque: the noise in newton metres.
     """
 
     frame: str = "child"
@@ -117,7 +120,7 @@ class ForceTorque:
 
 @dataclass(frozen=True, slots=True)
 class Altimeter:
-    """An altimeter: noise of the height in metres and of the vertical velocity in m/s."""
+    """An altimeter, with noise of the height in metres and of the vertical velocity in m/s."""
 
     vertical_position: Noise = NO_NOISE
     vertical_velocity: Noise = NO_NOISE
@@ -125,7 +128,7 @@ class Altimeter:
 
 @dataclass(frozen=True, slots=True)
 class AirPressure:
-    """A barometer: the reference altitude in metres, and noise in pascals."""
+    """A barometer, with the altitude of the world's origin in metres and noise in pascals."""
 
     reference_altitude: float = 0.0
     noise: Noise = NO_NOISE
@@ -133,7 +136,7 @@ class AirPressure:
 
 @dataclass(frozen=True, slots=True)
 class Sonar:
-    """A sonar with a cone, sphere or box (``geometry``); lengths in metres."""
+    """A sonar whose beam is a cone, sphere or box (``geometry``); lengths in metres."""
 
     geometry: str = "cone"
     min: float = 0.0
@@ -143,7 +146,10 @@ class Sonar:
 
 @dataclass(frozen=True, slots=True)
 class LogicalCamera:
-    """A logical camera, which lists the models in its view: distances in metres, the horizontal angle in radians."""
+    """A logical camera, which lists the models in its view.
+
+    Distances are in metres, and the horizontal angle of view is in radians.
+    """
 
     near: float = 0.0
     far: float = 1.0
@@ -156,15 +162,15 @@ class Sensor:
     """A sensor on a link or joint.
 
     Attributes:
-        type: such as ``camera``, ``gpu_lidar``, ``imu``; an unknown type stays as written.
+        type: the type, such as ``camera``, ``gpu_lidar`` or ``imu``; an unknown type is kept as written.
         pose: the pose in the frame of the link or joint.
-        update_rate: measurements per second; 0 for one per step.
-        always_on: whether it measures without a subscriber.
-        visualize: whether its measurements are drawn.
-        topic: its topic; empty for the default topic.
-        frame_id: the frame of its messages; empty for the default frame.
-        cameras: its cameras; every camera type except ``multicamera`` has one.
-        plugins: the plugins that publish its measurements in Gazebo classic.
+        update_rate: the measurements per second; 0 for one per step.
+        always_on: whether the sensor measures without a subscriber.
+        visualize: whether measurements are displayed.
+        topic: the topic of the measurements; empty for the default topic.
+        frame_id: the frame of the messages; empty for the default frame.
+        cameras: the cameras; every camera type except ``multicamera`` has one.
+        plugins: the plugins that publish the measurements in Gazebo classic.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""``<geometry>``: the shapes of SDF; lengths in metres.
+"""The element ``<geometry>``: the shapes of SDF, with lengths in metres.
 
 Source of the elements and defaults: the SDFormat specification 1.12, ``geometry.sdf`` and the files of each shape.
 """
@@ -26,7 +26,7 @@ from linkwright.sdf.values import (
 
 @dataclass(frozen=True, slots=True)
 class Plane:
-    """An infinite plane through the origin; `size` is the part that is drawn."""
+    """An infinite plane through the origin; `size` is the visible part."""
 
     normal: Vector3 = (0.0, 0.0, 1.0)
     size: tuple[float, float] = (1.0, 1.0)
@@ -49,7 +49,7 @@ class Cone:
 
 @dataclass(frozen=True, slots=True)
 class Submesh:
-    """A part of a mesh file, by its name in the file; `center` moves it to the origin."""
+    """The name of a part of a mesh file; with `center`, the part is moved to the origin."""
 
     name: str
     center: bool = False
@@ -57,7 +57,7 @@ class Submesh:
 
 @dataclass(frozen=True, slots=True)
 class Mesh:
-    """A mesh file by its URI, scaled along x, y and z; either all of it or one submesh."""
+    """A mesh file or one of its submeshes, scaled along x, y and z."""
 
     uri: str
     scale: Vector3 = (1.0, 1.0, 1.0)
@@ -66,7 +66,7 @@ class Mesh:
 
 @dataclass(frozen=True, slots=True)
 class TerrainTexture:
-    """A texture of a heightmap: its images by their URIs and its edge length in metres."""
+    """A texture of a heightmap: the URIs of its images, and its edge length in metres."""
 
     diffuse: str = ""
     normal: str = ""
@@ -75,7 +75,7 @@ class TerrainTexture:
 
 @dataclass(frozen=True, slots=True)
 class Blend:
-    """The transition between two textures of a heightmap, from a height over a distance, both in metres."""
+    """The transition between two textures of a heightmap: its start height and its extent, in metres."""
 
     min_height: float = 0.0
     fade_dist: float = 0.0
@@ -88,7 +88,7 @@ class Heightmap:
     Attributes:
         uri: the image, with 2^n + 1 pixels along each side.
         size: the extent along x and y, and from the lowest to the highest value.
-        position: the offset of its centre.
+        position: the offset of the centre.
         textures: the textures, from the lowest to the highest.
         blends: the transitions between the textures.
         sampling: the number of heights per pixel.
@@ -146,12 +146,12 @@ Shape = (
 
 
 def _shape(**shapes: Shape | tuple[Polyline, ...] | None) -> Shape:
-    """Return the shape to use of several: the first in libsdformat's order, which is that of the table."""
+    """Return the first shape that is given, in libsdformat's order of shapes, or `NO_SHAPE`."""
     return next((shape for shape in shapes.values() if shape), NO_SHAPE)
 
 
 def _if(kind: type) -> Callable[[Shape], Shape | None]:
-    """Return a function that returns a shape of one kind for writing, and None for other kinds."""
+    """Return a function for writing that returns a shape of the class `kind`, and None for any other."""
     return lambda shape: shape if isinstance(shape, kind) else None
 
 

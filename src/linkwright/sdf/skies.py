@@ -1,4 +1,4 @@
-"""``<sky>`` and ``<fog>`` of a scene.
+"""The elements ``<sky>`` and ``<fog>`` of a scene.
 
 Source of the elements and defaults: the SDFormat specification 1.12, ``scene.sdf``.
 """
@@ -26,12 +26,12 @@ class Fog:
     """Fog in a scene.
 
     Attributes:
-        color: its colour.
+        color: the colour of the fog.
         type: ``none``, ``linear`` (from `start` to `end`), or by `density`: ``constant`` (Gazebo: ``exp``) or
             ``quadratic`` (``exp2``).
-        start: the distance in m at which it begins.
+        start: the distance in m at which the fog begins.
         end: the distance in m beyond which nothing is visible.
-        density: in 1/m.
+        density: the density in 1/m.
     """
 
     color: Color = (1.0, 1.0, 1.0, 1.0)

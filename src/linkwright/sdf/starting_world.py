@@ -1,4 +1,4 @@
-"""The text of a new world."""
+"""The text of a newly created world."""
 
 from __future__ import annotations
 
@@ -70,7 +70,9 @@ _TEXT = """\
 
 
 def starting_world(name: str) -> str:
-    """Return a world with ground, light and a box, with comments, that Gazebo classic and gz can read.
+    """Return the text of a commented world with ground, light and a box.
+
+    Gazebo classic and gz can read this world.
 
     Args:
         name: the name of the world.

@@ -1,4 +1,4 @@
-"""``<state>``: the poses of a world's models and lights when Gazebo classic saved it.
+"""The element ``<state>``: the poses of models and lights when Gazebo classic saved a world.
 
 Source of the elements and defaults: the SDFormat specification 1.12, ``state.sdf``.
 """
@@ -26,7 +26,10 @@ class LinkState:
 
 @dataclass(frozen=True, slots=True)
 class ModelState:
-    """The state of a model, its links and nested models in a saved world, with poses in the frame of the world."""
+    """The state of a model, its links and its nested models in a saved world.
+
+    Poses are in the frame of the world.
+    """
 
     name: str
     pose: RawPose | None = None
@@ -46,7 +49,7 @@ class LightState:
 
 @dataclass(frozen=True, slots=True)
 class Insertions:
-    """Models and lights that were inserted after the start."""
+    """The models and lights that were inserted after the simulation started."""
 
     models: tuple[Model, ...] = ()
     lights: tuple[Light, ...] = ()
@@ -54,7 +57,7 @@ class Insertions:
 
 @dataclass(frozen=True, slots=True)
 class Deletions:
-    """Names of models and lights that were deleted after the start."""
+    """The names of models and lights that were deleted after the simulation started."""
 
     names: tuple[str, ...] = ()
 

@@ -1,4 +1,4 @@
-"""``<surface>``: friction, restitution and stiffness of contacts.
+"""The element ``<surface>``: friction, restitution and stiffness of contacts.
 
 Source of the elements and defaults: the SDFormat specification 1.12, ``surface.sdf``.
 """
@@ -18,11 +18,11 @@ class Friction:
     """Friction with ODE's friction pyramid.
 
     Attributes:
-        mu: Coulomb's coefficient along `direction`.
-        mu2: the coefficient perpendicular to it.
+        mu: the coefficient of Coulomb friction along `direction`.
+        mu2: the coefficient perpendicular to `direction`.
         direction: the first direction in the frame of the collision (or of `expressed_in`); zero for any.
         slip1: the slip velocity per force along `direction`, in m/s/N.
-        slip2: the slip velocity per force perpendicular to it, in m/s/N.
+        slip2: the slip velocity per force perpendicular to `direction`, in m/s/N.
         expressed_in: the frame of `direction`.
     """
 
@@ -36,7 +36,7 @@ class Friction:
 
 @dataclass(frozen=True, slots=True)
 class BulletFriction:
-    """Friction parameters of the engine Bullet."""
+    """Friction parameters of the physics engine Bullet."""
 
     friction: float = 1.0
     friction2: float = 1.0
@@ -60,10 +60,10 @@ class Contact:
     Attributes:
         soft_cfm: the constraint force mixing.
         soft_erp: the fraction of the error that is corrected in a step.
-        kp: stiffness in N/m.
-        kd: damping in N s/m.
+        kp: the stiffness in N/m.
+        kd: the damping in N s/m.
         max_vel: the maximum speed at which an overlap is corrected, in m/s.
-        min_depth: the overlap that is not corrected, in metres.
+        min_depth: the overlap up to which nothing is corrected, in metres.
     """
 
     soft_cfm: float = 0.0
@@ -81,12 +81,12 @@ class Surface:
     Attributes:
         friction: friction for ODE; None if not given.
         bullet_friction: friction for the engine Bullet; None if not given.
-        torsional: friction against rotation about the normal.
-        contact: stiffness; None if not given.
+        torsional: friction against rotation about the normal; None if not given.
+        contact: the stiffness; None if not given.
         restitution: the fraction of the speed that remains after a bounce.
-        bounce_threshold: the speed in m/s above which it bounces.
+        bounce_threshold: the speed in m/s above which the collision bounces.
         collide_without_contact: whether contacts are reported without having an effect.
-        collide_bitmask: selects the shapes that it touches, by a common bit.
+        collide_bitmask: a bit mask that selects the shapes to touch, by a common bit.
         category_bitmask: the bits that the masks of other shapes select.
     """
 
@@ -156,7 +156,7 @@ _Group = TypeVar("_Group")
 
 
 def _different(group: _Group, usual: _Group) -> _Group | None:
-    """Return the value to write for a group, or None if all its values are defaults."""
+    """Return a group of values for writing, or None if all values are defaults."""
     return None if group == usual else group
 
 

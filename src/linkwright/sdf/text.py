@@ -1,6 +1,6 @@
-"""Parse XML as the simulators do, whose parser (TinyXML2) accepts more than XML allows.
+"""Parses XML as the simulators do, whose parser (TinyXML2) accepts more than XML allows.
 
-The simulators also accept blanks and comments before the XML declaration, and bytes that are not UTF-8.
+The simulators also accept whitespace and comments before the XML declaration, and bytes that are not UTF-8.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ def parse_as_gazebo(text: str | bytes, name: str) -> tuple[Document, tuple[Diagn
     simulators read these files.
 
     Raises:
-        LinkwrightError: the text is not XML (XML###).
+        LinkwrightError: the text is not XML, even for Gazebo (XML###).
     """
     warnings: list[Diagnostic] = []
     if isinstance(text, bytes):
@@ -53,7 +53,10 @@ def parse_as_gazebo(text: str | bytes, name: str) -> tuple[Document, tuple[Diagn
 
 
 def _decoded(data: bytes, name: str) -> tuple[str, list[Diagnostic]]:
-    """Decode the text of a file; bytes that are invalid in its encoding are decoded as Latin-1."""
+    """Return the text of a file, and findings.
+
+    If the bytes are invalid in the encoding of the file, the text is decoded as Latin-1, with a warning.
+    """
     try:
         return decode(data, name), []
     except LinkwrightError as error:

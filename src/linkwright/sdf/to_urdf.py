@@ -1,4 +1,4 @@
-"""Convert a model in SDF to a robot in URDF, as ROS does if a robot description is SDF.
+"""Converts a model in SDF to a robot in URDF, as ROS does if a robot description is SDF.
 
 Source: the package sdformat_urdf, which is urdfdom's reader of SDF.
 """
@@ -38,7 +38,7 @@ _AMBIENT, _DIFFUSE = 0.4, 0.8
 
 
 class _NoRobotError(Exception):
-    """Raised when a model cannot become a robot; names the element that prevents it."""
+    """Raised when a model cannot be converted to a robot; carries the reason, an element and a hint."""
 
     def __init__(self, reason: Phrase, element: Element | None, hint: Phrase | None = None) -> None:
         super().__init__(reason)
@@ -48,14 +48,14 @@ class _NoRobotError(Exception):
 
 
 def robot_from_sdf(sdf: Sdf, root: Element) -> Reading:
-    """Convert the model of an SDF text to a robot.
+    """Convert the model of an SDF document to a robot.
 
     In URDF, the frame of a link is the frame of its parent joint, so the parts of the link are moved. Addresses of
     meshes are not changed. Sensors, lights and plugins are dropped.
 
     Args:
         sdf: the parsed document, with its includes resolved.
-        root: its root element.
+        root: the root element of the document.
 
     Returns:
         The robot and no findings, or no robot and the reason (SDF180): the document is not a single model, links and
@@ -175,7 +175,7 @@ class _Converter:
         )
 
     def _frame(self, link: str, above: dict[str, Joint]) -> Transform:
-        """Return the pose in the model of the frame that URDF gives a link: its joint's frame, or its own."""
+        """Return the pose in the model of a link's frame in URDF: the frame of its parent joint, if any."""
         return self._frames.pose(above[link].name if link in above else link)
 
     def _link(self, link: Link, above: Joint | None) -> urdf.Link:

@@ -1,4 +1,4 @@
-"""Messages about elements that SDF does not define at their place."""
+"""Messages about elements in places where SDF does not define them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _HARMLESS = frozenset({("collision", "material")})
 
 
 def homes_of(tag: str) -> tuple[str, ...]:
-    """Return the parents that SDF allows for an element.
+    """Return the tags of the parents in which SDF allows an element.
 
     The result is empty if the element is unknown or has many parents.
     """
@@ -26,7 +26,7 @@ def homes_of(tag: str) -> tuple[str, ...]:
 
 
 def links_of_static_models(elements: Iterable[Element]) -> frozenset[int]:
-    """Return the IDs of links in models that never move."""
+    """Return the ``id()`` of each link element in static models."""
     return frozenset(
         id(link)
         for model in elements
@@ -38,7 +38,7 @@ def links_of_static_models(elements: Iterable[Element]) -> frozenset[int]:
 def changes_nothing(child: Element, parent: Element, static_links: frozenset[int]) -> bool:
     """Return whether reading an element would make no difference.
 
-    This is the case if it is empty, repeats the default, or sets an unknown word to zero.
+    This is the case if the element is empty, repeats the default, or is unknown and has the value zero or false.
     """
     if (parent.tag, child.tag) in _HARMLESS or (child.tag == "static" and id(parent) in static_links):
         return True
@@ -62,7 +62,7 @@ def _numbers(text: str) -> list[float]:
 
 @cache
 def _homes() -> dict[str, frozenset[str]]:
-    """Return the tags of the allowed parents for each tag."""
+    """Return the tags of the allowed parents of each element, by tag."""
     homes: dict[str, set[str]] = {}
     seen: set[int] = set()
     waiting: list[ElementRule] = [SDF]

@@ -36,17 +36,17 @@ def number(text: str) -> float:
 
 
 def numbers(text: str) -> tuple[float, ...]:
-    """Parse a list of numbers.
+    """Parse a list of numbers that are separated by whitespace.
 
     Raises:
-        ValueError: one of them is not a number.
+        ValueError: one of the words is not a number.
     """
     return tuple(map(number, text.split()))
 
 
 def plain(value: float) -> str:
     """Format a number as briefly as possible without loss."""
-    return repr(float(value) or 0.0).removesuffix(".0")  # float() or 0.0 also changes -0 to 0
+    return repr(float(value) or 0.0).removesuffix(".0")  # ``or 0.0`` changes -0.0 to 0.0
 
 
 def _joined(values: Iterable[float]) -> str:
@@ -54,7 +54,7 @@ def _joined(values: Iterable[float]) -> str:
 
 
 def leading_number(text: str) -> float | None:
-    """Return the number at the beginning of a text, or None.
+    """Return the number at the beginning of a text, or None if there is none.
 
     The text is read as by ``std::stod`` in libsdformat.
     """
@@ -63,7 +63,10 @@ def leading_number(text: str) -> float | None:
 
 
 def beginning_of_vector(text: str, count: int) -> tuple[float, ...] | None:
-    """Return the leading numbers of a text, as libsdformat reads them (``>>``); None if there are too few."""
+    """Return the first `count` numbers of a text, or None if there are fewer.
+
+    The text is read as by ``>>`` in libsdformat.
+    """
     found = re.match(rf"\s*{_STREAMED}(?:\s+{_STREAMED}){{{count - 1}}}", text)
     return None if found is None else tuple(map(float, found[0].split()))
 
@@ -107,7 +110,7 @@ def _color(text: str) -> Color:
 
 
 def _time(text: str) -> float:
-    """Parse seconds and nanoseconds, or only seconds."""
+    """Parse seconds and nanoseconds, or only seconds, and return seconds."""
     found = numbers(text)
     if len(found) == 1:
         return found[0]
@@ -137,7 +140,7 @@ COUNTS = {VECTOR2: 2, VECTOR3: 3, COLOR: 4, POSE: 6}
 
 
 def choice(*names: str) -> ValueType:
-    """Return the value type of an enumeration."""
+    """Return the value type of an enumeration of words."""
 
     def read(text: str) -> str:
         if text.strip() not in names:
@@ -159,7 +162,7 @@ def value(
     usual: bool = False,
     get: Callable[[Any], Any] | None = None,
 ) -> ElementRule:
-    """Return the rule of an element with one value, such as ``<mass>2.5</mass>``."""
+    """Return the rule of an element whose text is a value, such as ``<mass>2.5</mass>``."""
     rule = AttributeRule(
         "text", kind, meaning, unit, required=required, default=default, usual=usual, field=field or tag, get=get
     )
@@ -168,7 +171,7 @@ def value(
 
 
 def values(tag: str, kind: ValueType, meaning: str, *, field: str = "") -> ElementRule:
-    """Return the rule of an element with one value that may occur any number of times."""
+    """Return the rule of an element whose text is a value, and which may occur any number of times."""
     rule = AttributeRule("text", kind, meaning, field="value", get=_only)
     return ElementRule(tag, meaning, text=rule, many=True, make=_only, field=field or f"{tag}s")
 
@@ -178,7 +181,7 @@ def _only(value: Any) -> Any:
 
 
 def unwritten(_: Any) -> None:
-    """Return None, because a synonym of another word is never written."""
+    """Return None, so that the synonym of an element is never written."""
 
 
 def name_of(meaning: str = "its name, unique among its kind in the model or world") -> AttributeRule:
@@ -189,7 +192,7 @@ def name_of(meaning: str = "its name, unique among its kind in the model or worl
 def object_rule(
     kind: Callable[..., Any], tag: str, meaning: str, *children: ElementRule, **details: Any
 ) -> ElementRule:
-    """Return the rule of an element that creates an object from its parts.
+    """Return the rule of an element from whose parts `kind` creates an object.
 
     An invalid part does not affect the others.
     """
@@ -197,7 +200,7 @@ def object_rule(
 
 
 def without_unreadable(kind: Callable[..., Any]) -> Callable[..., Any]:
-    """Wrap a factory so that empty and unreadable parts in `values` are left out."""
+    """Wrap a factory so that missing and unreadable items are removed from its tuple arguments."""
 
     def make(**parts: Any) -> Any:
         return kind(
@@ -213,10 +216,10 @@ def without_unreadable(kind: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def pose_of(found: tuple[float, ...], degrees: bool, rotation_format: str) -> Pose:
-    """Return the pose given by six or seven numbers.
+    """Return the pose given by the numbers of a ``<pose>``.
 
     Raises:
-        ValueError: the count of the numbers does not match the format.
+        ValueError: the number of values does not match the format, or a quaternion is zero.
     """
     if rotation_format == "quat_xyzw":
         x, y, z, *rest = found
@@ -225,7 +228,7 @@ def pose_of(found: tuple[float, ...], degrees: bool, rotation_format: str) -> Po
         if length == 0.0:
             raise ValueError(found)
         if abs(length - 1.0) < 1e-12:
-            length = 1.0  # keeps every bit of a written quaternion
+            length = 1.0  # keeps a written unit quaternion unchanged
         quaternion: Quaternion = (qx / length, qy / length, qz / length, qw / length)
         return Pose((x, y, z), rpy_from_quaternion(quaternion), quaternion)
     x, y, z, roll, pitch, yaw = found

@@ -1,4 +1,4 @@
-"""Vary models: masses, friction, and noise of sensors."""
+"""Varies the masses, friction and sensor noise of models."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _SCALED_NOISE = ("mean", "stddev", "bias_mean", "bias_stddev", "dynamic_bias_std
 
 
 def with_mass(model: Model, factor: float) -> Model:
-    """Return a model with the masses of its links multiplied; inertias grow in proportion."""
+    """Return a model with the masses, inertias and densities of its links multiplied by a factor."""
 
     def scaled(link: Link) -> Link:
         inertial = link.inertial or Inertial()
@@ -29,7 +29,7 @@ def with_mass(model: Model, factor: float) -> Model:
 
 
 def with_friction(model: Model, coefficient: float) -> Model:
-    """Return a model with another coefficient of friction, in all its collisions and all directions."""
+    """Return a model with a new coefficient of friction for all collisions and directions."""
 
     def scaled(collision: Collision) -> Collision:
         friction = replace(collision.surface.friction or Friction(), mu=coefficient, mu2=coefficient)
@@ -39,7 +39,7 @@ def with_friction(model: Model, coefficient: float) -> Model:
 
 
 def with_noise(model: Model, factor: float) -> Model:
-    """Return a model with the noise and bias of its sensors, as written in ``<noise>``, multiplied."""
+    """Return a model with the noise and bias in all ``<noise>`` elements multiplied by a factor."""
 
     def scaled(noise: Noise) -> Noise:
         return replace(noise, **{name: getattr(noise, name) * factor for name in _SCALED_NOISE})
@@ -48,7 +48,10 @@ def with_noise(model: Model, factor: float) -> Model:
 
 
 def _changed(value: V, kind: type[Any], change: Callable[[Any], Any]) -> V:
-    """Return a value with all contained values of a class changed; unchanged parts are the same objects."""
+    """Return a value in which `change` is applied to all contained instances of a class.
+
+    Unchanged parts are the same objects as before.
+    """
     if isinstance(value, kind):
         return cast("V", change(value))
     if isinstance(value, tuple):

@@ -1,4 +1,4 @@
-"""Compute the poses of an actor along its path.
+"""Computes the poses of an actor along its path.
 
 Source: Gazebo's ``common::PoseAnimation``, ``Spline`` and ``RotationSpline``. The points of a trajectory are
 interpolated by a Catmull-Rom spline, whose tangents are shortened by the tension, and their rotations by a quaternion
@@ -37,12 +37,14 @@ class Walk:
         return bool(self._legs)
 
     def pose(self, seconds: float) -> Transform:
-        """Return the pose at a time.
+        """Return the pose at a simulated time in seconds.
 
-        It is the pose of the first waypoint before the walk, and of the last one after its end.
+        Before the walk starts, this is the pose of the first waypoint. After the end, the walk is repeated if the
+        script loops, and otherwise the pose of the last waypoint is returned. A walk without waypoints is at
+        the origin.
 
         Args:
-            seconds: the time of the world.
+            seconds: the simulated time in s.
         """
         if not self._legs:
             return IDENTITY
@@ -58,7 +60,7 @@ class Walk:
 
 @dataclass(frozen=True, slots=True)
 class _Key:
-    """A waypoint with the tangents of the splines through it."""
+    """A waypoint: position and rotation, with the tangents of the splines through them."""
 
     point: Vector3
     turn: Quaternion
@@ -73,7 +75,7 @@ class _Leg:
         found = {waypoint.time: transform_of(waypoint.pose.pose) for waypoint in trajectory.waypoints}
         self._times = sorted(found)
         poses = [found[time] for time in self._times]
-        self._times[0] = min(self._times[0], 0.0)  # the walk starts at the first point, regardless of its time
+        self._times[0] = min(self._times[0], 0.0)  # The walk starts at the first point, whatever its time.
         stretch = 0.5 * (1.0 - trajectory.tension)
         self._keys = [_key(poses, index, stretch) for index in range(len(poses))]
         self.length = self._times[-1]
@@ -101,7 +103,7 @@ def _key(poses: list[Transform], index: int, stretch: float) -> _Key:
 
 
 def _between(one: _Key, other: _Key, share: float) -> Vector3:
-    """Return a point of the cubic Hermite curve through two points with given tangents."""
+    """Return a point of the cubic Hermite curve between two waypoints; `share` is from 0 to 1."""
     square, cube = share**2, share**3
     first, last = 2 * cube - 3 * square + 1, 3 * square - 2 * cube
     leaving, coming = cube - 2 * square + share, cube - square

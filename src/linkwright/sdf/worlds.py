@@ -1,4 +1,6 @@
-"""``<world>`` and ``<sdf>``: worlds with their scene, position on earth, atmosphere and roads.
+"""The elements ``<world>`` and ``<sdf>``, and the parts of a world without a module of their own.
+
+These are the scene, the position on earth, the atmosphere and roads.
 
 Source of the elements and defaults: the SDFormat specification 1.12, ``world.sdf``, ``scene.sdf``.
 """
@@ -36,7 +38,10 @@ from linkwright.xmltree import Element
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """The look of a world: light, background, sky and fog; colours are as in `Material`, None means no sky or fog."""
+    """The appearance of a world: ambient light, background, sky and fog.
+
+    Colours are as in `Material`. The sky or the fog is None if there is none.
+    """
 
     ambient: Color = (0.4, 0.4, 0.4, 1.0)
     background: Color = (0.7, 0.7, 0.7, 1.0)
@@ -50,7 +55,10 @@ class Scene:
 
 @dataclass(frozen=True, slots=True)
 class SphericalCoordinates:
-    """The position of the origin on earth: degrees north and east, metres above the ellipsoid, heading in degrees."""
+    """The position and heading on earth of a world's origin.
+
+    Latitude (north), longitude (east) and heading are in degrees. The elevation is in metres above the ellipsoid.
+    """
 
     surface_model: str = "EARTH_WGS84"
     world_frame_orientation: str = "ENU"
@@ -62,7 +70,11 @@ class SphericalCoordinates:
 
 @dataclass(frozen=True, slots=True)
 class Atmosphere:
-    """The temperature at the origin in kelvin, its gradient in K/m, and the pressure at the origin in pascals."""
+    """The atmosphere of a world.
+
+    Its properties are the temperature at the origin in kelvin, the temperature gradient in K/m, and the pressure at the
+    origin in pascals.
+    """
 
     type: str = "adiabatic"
     temperature: float = 288.15
@@ -82,11 +94,11 @@ class Road:
 
 @dataclass(frozen=True, slots=True)
 class World:
-    """A world; lengths in metres, gravity in m/s2, the magnetic field in tesla, the wind in m/s.
+    """A world, with lengths in metres, gravity in m/s2, the magnetic field in tesla and wind in m/s.
 
     Attributes:
-        gravity: None if the world does not set it; `linkwright.sdf.worlds.gravity_of` returns the effective one.
-        states: saved states; Gazebo classic uses the last.
+        gravity: None if the world does not set it; `linkwright.sdf.worlds.gravity_of` returns the effective gravity.
+        states: the saved states; Gazebo classic uses the last one.
     """
 
     name: str = ""
@@ -112,7 +124,7 @@ class World:
 
 @dataclass(frozen=True, slots=True)
 class Sdf:
-    """A file with worlds, or with a single model, light or actor."""
+    """The content of an SDF file: worlds, or a single model, light or actor."""
 
     version: str
     worlds: tuple[World, ...] = ()
@@ -123,7 +135,7 @@ class Sdf:
 
 
 def gravity_of(world: World) -> Vector3:
-    """Return the gravity in m/s2: from the world, from its physics in old files, or the default."""
+    """Return the gravity in m/s2: of the world, of its physics in old files, or the default."""
     if world.gravity is not None:
         return world.gravity
     physics = physics_of(world)
@@ -131,13 +143,16 @@ def gravity_of(world: World) -> Vector3:
 
 
 def populated(world: World) -> World:
-    """Return a world with the models of its populations added."""
+    """Return a world in which the models of its populations are added to its own models."""
     more = (model for population in world.populations for model in models_of(population))
     return replace(world, models=(*world.models, *more), populations=())
 
 
 def physics_of(world: World) -> Physics:
-    """Return the physics in use: the one marked as default, or else the first."""
+    """Return the physics settings in use: those marked as default, or else the first.
+
+    The default settings are returned for a world without physics settings.
+    """
     return next(
         (physic for physic in world.physics if physic.default), world.physics[0] if world.physics else Physics()
     )

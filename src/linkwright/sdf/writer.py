@@ -1,4 +1,4 @@
-"""Write worlds and models as SDF that gives equal ones when it is read back."""
+"""Writes worlds and models as SDF that gives equal worlds and models when it is read."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ _GAP = "\x01"
 
 @dataclass(frozen=True, slots=True)
 class WrittenModel:
-    """A model as part of a world.
+    """The text of a model that is part of a world.
 
     Attributes:
-        text: the text of its element.
-        prefixes: the prefixes of names in it.
+        text: the text of the model's element.
+        prefixes: the XML prefixes of names in the text.
     """
 
     text: str
@@ -36,19 +36,20 @@ class WrittenModel:
 
 
 def save_model_of_world(model: Model) -> WrittenModel:
-    """Return a model as text for `save_world`, without resolved includes."""
+    """Return the text of a model for `save_world`; the model must not have resolved includes."""
     element = write_element(MODEL, model, _complete)
     return WrittenModel(xmltree.write_element(element, depth=2), frozenset(_prefixes(element)))
 
 
 def save_world(world: World, models: Sequence[WrittenModel]) -> str:
-    """Return the text that `save` returns for a world, with models that are already written.
+    """Return the SDF text of a world, using models that are already written.
 
-    A caller that writes a world after each of many changes thus only has to write the changed models.
+    The text is the text that `save` returns. A caller that writes a world after each of many changes only has to write
+    the changed models again.
 
     Args:
         world: the world without its models.
-        models: the models.
+        models: the written models.
     """
     if not models:
         return save(world)
@@ -77,7 +78,7 @@ def save(document: Sdf | World | Model) -> str:
 
 
 def _element(sdf: Sdf) -> Element:
-    """Return the element of a whole file, with the namespaces that it declares."""
+    """Return the element of a whole file, with the XML namespaces that the file declared when read."""
     root = write_element(SDF, replace(sdf, version=VERSION), _complete)
     declared = {} if sdf.element is None else sdf.element.attributes
     root.attributes |= {name: value for name, value in declared.items() if name.startswith("xmlns")}
@@ -85,13 +86,13 @@ def _element(sdf: Sdf) -> Element:
 
 
 def _declare(root: Element, more: Iterable[str] = ()) -> None:
-    """Declare the XML prefixes that a file uses, and additional ones."""
+    """Declare the XML prefixes that an element uses, and those in `more`."""
     for prefix in sorted({*_prefixes(root), *more}):
         root.attributes.setdefault(f"xmlns:{prefix}", _PREFIX)
 
 
 def _complete(element: Element, rule: ElementRule, instance: Any) -> None:
-    """Add the parts that the rules of the tables do not cover."""
+    """Add the content of the original element that the rules of the tables do not cover."""
     read: Element | None = getattr(instance, "element", None)
     if read is None:
         return

@@ -1,1 +1,1 @@
-"""Simulate worlds and their robots with MuJoCo."""
+"""Simulation of worlds and their robots with MuJoCo."""

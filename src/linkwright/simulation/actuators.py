@@ -32,17 +32,17 @@ class Actuated(Protocol):
         """The number of times that the model and the data were rebuilt."""
 
     def renew(self) -> None:
-        """Compile MuJoCo's model again if the scene has changed."""
+        """Recompile the MuJoCo model if the scene has changed."""
 
     def refresh(self) -> None:
-        """Call `renew`, and compute the values that depend on positions."""
+        """Call `renew`, and update the MuJoCo data that is derived from positions."""
 
     def joint_state(self, name: str) -> tuple[float, float]:
-        """Return the position and velocity of a joint with one axis."""
+        """Return the position, in rad (m), and velocity, in rad/s (m/s), of a joint with one axis."""
 
 
 class Motor:
-    """A motor that holds the velocity of a joint."""
+    """A motor that keeps a joint at a target velocity."""
 
     def __init__(self, simulation: Actuated, name: str) -> None:
         self._simulation = simulation
@@ -53,7 +53,7 @@ class Motor:
 
     @property
     def target(self) -> float:
-        """The velocity to hold, in rad/s (m/s)."""
+        """The target velocity, in rad/s, or in m/s for a prismatic joint."""
         number = self._actuator()
         return float(self._simulation.data.ctrl[number])
 
@@ -66,7 +66,10 @@ class Motor:
             self._gain = 0.0
 
     def release(self) -> None:
-        """Switch the motor off until a target is set; call this again after the model has changed."""
+        """Switch the motor off until a target is set.
+
+        Rebuilding the model switches the motor on again, so call this after each rebuild.
+        """
         number = self._actuator()
         gain = float(self._simulation.model.actuator_gainprm[number, 0])
         if gain:
@@ -88,7 +91,7 @@ class Motor:
 
 
 class Servo:
-    """Holds a joint with one axis at a position, and moves it to others.
+    """A servo that holds a joint with one axis at a position, and moves the joint to new positions.
 
     A servo calls `Simulation.renew` on first use, so adding many servos compiles the model only once.
 
@@ -130,7 +133,10 @@ class Servo:
         simulation.data.eq_active[simulation.model.equality(self._name).id] = 0
 
     def move(self, target: float, seconds: float) -> None:
-        """Move towards a position in rad (m), within the joint's limits, as far as `seconds` allow."""
+        """Move the joint towards a target, by at most the maximum speed times `seconds`.
+
+        The target is a position in rad (m), which is clipped to the joint's limits.
+        """
         self._simulation.renew()
         model = self._simulation.model
         joint = model.joint(self._joint)

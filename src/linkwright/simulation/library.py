@@ -1,4 +1,7 @@
-"""The library MuJoCo, which the extra ``sim`` installs: version 4, or on Python 3.10 the last version with wheels."""
+"""Access to the MuJoCo library, which the extra ``sim`` installs.
+
+The extra installs version 4, or on Python 3.10 the last version with wheels.
+"""
 
 from __future__ import annotations
 
@@ -24,4 +27,4 @@ def load_mujoco() -> Any:
 
 
 def _discard_warning(text: str) -> None:
-    """Discard a MuJoCo warning: callers find the warnings in MuJoCo's data, and report them."""
+    """Discard a MuJoCo warning: callers find the warnings in MuJoCo's data and report them."""

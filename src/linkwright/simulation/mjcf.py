@@ -1,4 +1,4 @@
-"""Export worlds and models as MJCF, MuJoCo's file format."""
+"""Export of worlds and models as MJCF, MuJoCo's file format."""
 
 from __future__ import annotations
 
@@ -20,7 +20,9 @@ _DEFAULT_RGBA = [0.5, 0.5, 0.5, 1.0]
 
 
 def write_mjcf(sdf: Sdf, finder: PackageFinder) -> tuple[str, Sequence[Diagnostic]]:
-    """Return a world, or else the first model, as MJCF with embedded meshes, and the findings.
+    """Return the first world of an SDF file as MJCF with embedded meshes, and the findings.
+
+    If the file has no world, its models are exported.
 
     Raises:
         LinkwrightError: CLI321, MuJoCo rejects the model; SIM101, MuJoCo is not installed.

@@ -26,16 +26,16 @@ def cast(
     reach: float,
     normals: Any = None,
 ) -> tuple[Array, Any]:
-    """Cast rays from one point, and return the first hit of each.
+    """Cast rays from one point, and return the first hit of each ray.
 
     Args:
         model: MuJoCo's model.
         data: MuJoCo's data.
         origin: the common origin of the rays, shape (3,), in m.
-        rays: the unit vectors of their directions, shape (rays, 3).
-        groups: the groups of geoms that they can hit, shape (GROUPS,).
-        apart_from: a body whose geoms they pass through; -1 for none.
-        reach: their maximum length, in m.
+        rays: the directions of the rays as unit vectors, shape (rays, 3).
+        groups: the groups of geoms that the rays can hit, shape (GROUPS,).
+        apart_from: the body whose geoms the rays pass through; -1 for none.
+        reach: the maximum length of the rays, in m.
         normals: if given, receives the normals of the hit surfaces, shape (rays, 3).
 
     Returns:

@@ -1,9 +1,9 @@
-"""Separate bodies slowly that overlap at the start.
+"""Slow separation of bodies that overlap at the start.
 
 MuJoCo's contacts are damped springs: a body that starts 0.3 m inside the ground leaves it at 20 m/s. The same holds for
 joints that start beyond their limits, and for couplings and loops that do not fit yet. Such a spring may accelerate
 bodies only up to a maximum speed within a step: a depth that results in a higher speed is replaced by the depth that
-results in exactly this speed. Smaller depths act unchanged, and bodies at rest bear their load.
+results in exactly this speed. Smaller depths remain unchanged, so bodies at rest bear their load.
 
 gz's engine DART also bounds the speed, and ODE does so with ``contact_max_correcting_vel``.
 """
@@ -27,7 +27,7 @@ _CALM = 100
 
 
 class Recovery:
-    """Bounds the speed at which bodies separate that overlap at the start or after being placed.
+    """Bounds the speed at which bodies separate if they overlap at the start or after being placed.
 
     Args:
         model: MuJoCo's model.
@@ -44,15 +44,15 @@ class Recovery:
 
     @property
     def is_expected(self) -> bool:
-        """Whether the caller has to use `step` for the steps."""
+        """Whether overlaps are still possible, so that the caller has to use `step`."""
         return self._left > 0
 
     def expect(self) -> None:
-        """Check for overlaps from the next step on, until there have been none for several steps."""
+        """Check each step for overlaps, until a number of steps in a row has had none."""
         self._left = _CALM
 
     def step(self) -> None:
-        """Simulate one step."""
+        """Simulate one step with bounded separation speeds."""
         mujoco, model, data = self._mujoco, self._model, self._data
         mujoco.mj_step1(model, data)
         self._left -= 1
@@ -61,7 +61,7 @@ class Recovery:
         mujoco.mj_step2(model, data)
 
     def _bound(self) -> bool:
-        """Reduce depths that are too large; return whether there were any."""
+        """Reduce penetration depths that are too large; return whether any depth was reduced."""
         model, data, kinds = self._model, self._data, self._mujoco.mjtConstraint
         types, numbers, contacts = data.efc_type, data.efc_id, data.contact
         touching = contacts.efc_address >= 0
@@ -80,7 +80,7 @@ class Recovery:
         return bool(deep.any())
 
     def _maximum_depths(self, solref: Array, speeds: Array, greatest: Array) -> Array:
-        """Return the depths in m or rad at which springs do not exceed their maximum speeds after a step.
+        """Return the depths in m or rad at which springs reach their maximum speeds after a step.
 
         Args:
             solref: time constants in s and damping ratios; where negative, stiffness and damping. Shape (springs, 2).

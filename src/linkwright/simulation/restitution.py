@@ -1,4 +1,4 @@
-"""Time steps of MuJoCo with restitution: bodies bounce off each other within a step.
+"""Time steps of MuJoCo with restitution: colliding bodies bounce off each other within a step.
 
 MuJoCo's contacts are soft and absorb the speed of a hard impact: at usual time steps, no setting lets a ball rise as
 high as its coefficient of restitution requires. Therefore bodies that collide receive impulses after the step of the
@@ -31,10 +31,11 @@ _ROUNDS = 50
 
 
 class Stepper:
-    """Simulates the time steps of a model, with bouncing.
+    """Simulates the time steps of a model, with restitution.
 
-    Both shapes in a contact need a coefficient of restitution, and their product applies, as in gz. The pair bounces
-    above the lower of their velocity thresholds, as in Gazebo Classic, if there is one; gz has none.
+    Both shapes in a contact need a coefficient of restitution, and their product applies, as in gz. As in Gazebo
+    Classic, a pair bounces only above the lower of the two velocity thresholds, if one is set; gz has no
+    thresholds.
 
     Args:
         model: MuJoCo's model.
@@ -52,7 +53,7 @@ class Stepper:
         self._recovery = Recovery(model, data)
 
     def expect_overlaps(self) -> None:
-        """Separate bodies slowly that overlap now."""
+        """Bound the separation speed of bodies that overlap from now on, for as long as they overlap."""
         self._recovery.expect()
 
     def make_steps(self, count: int) -> None:
@@ -69,7 +70,7 @@ class Stepper:
             self._mujoco.mj_step(self._model, self._data, count)
 
     def _push_off(self) -> None:
-        """Give bodies that have just hit each other the velocity at which they bounce off."""
+        """Set the velocities with which bodies that have just collided bounce off each other."""
         contacts, speeds = self._data.contact, self._data.efc_vel
         geoms, rows = contacts.geom, contacts.efc_address
         share = self._coefficients[geoms].prod(axis=1)
@@ -97,7 +98,7 @@ class Stepper:
         struck = [index for index, _ in hits]
         depths = -contacts.dist[struck] - now[::3] * model.opt.timestep
         since = float(np.clip(depths / -speeds[rows[struck]], 0.0, 2.0 * model.opt.timestep).min())
-        self._mujoco.mj_integratePos(model, data.qpos, gained, since)  # as if separated at the moment of contact
+        self._mujoco.mj_integratePos(model, data.qpos, gained, since)  # as if they had separated on contact
 
     def _ways(self, contact: Any) -> Array:
         """Return the Jacobian of a contact along its normal and tangents, shape (3, degrees of freedom)."""
@@ -110,12 +111,12 @@ class Stepper:
 
 
 def _solve_impulses(response: Array, speeds: Array, wanted: list[tuple[float, float]]) -> Array:
-    """Return the impulses along the normals and both tangents of contacts.
+    """Return the impulses along the normals and both tangents of contacts, shape (3 contacts,).
 
     Args:
-        response: the speed in each direction for an impulse in each, shape (3 contacts, 3 contacts).
+        response: the speed in each direction for a unit impulse in each direction, shape (3 contacts, 3 contacts).
         speeds: the current speeds, shape (3 contacts,).
-        wanted: for each contact the speed of separation, and its friction.
+        wanted: for each contact the speed of separation, and the coefficient of friction.
     """
     impulses, speeds = np.zeros(len(speeds)), speeds.copy()
     for _ in range(_ROUNDS):

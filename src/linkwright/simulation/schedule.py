@@ -1,4 +1,4 @@
-"""Functions that are called at multiples of a period in simulated time."""
+"""Periodic calls of functions in simulated time."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ class Task:
     """A function that is called periodically.
 
     Attributes:
-        period: nanoseconds from one call to the next.
+        period: the nanoseconds from one call to the next.
         function: the function to call.
-        cancelled: whether it is no longer called.
+        cancelled: whether the calls have ended.
     """
 
     period: int
@@ -23,10 +23,13 @@ class Task:
 
 
 class Schedule:
-    """Tasks in simulated time; tasks that are due at the same time run in the order in which they were added."""
+    """The tasks in simulated time.
+
+    Tasks that are due at the same time run in the order in which they were added.
+    """
 
     def __init__(self) -> None:
-        self._heap: list[tuple[int, int, Task]] = []  # due time, order among tasks with this time, task
+        self._heap: list[tuple[int, int, Task]] = []  # time of the next call, sequence number, task
         self._count = 0
 
     @property
@@ -37,14 +40,14 @@ class Schedule:
         return self._heap[0][0] if self._heap else None
 
     def add(self, period: int, function: Callable[[], None], now: int) -> Task:
-        """Add a task, which is due for the first time one period from now."""
+        """Add a task, which runs for the first time one period after `now`, in nanoseconds."""
         task = Task(period, function)
         heappush(self._heap, (now + period, self._count, task))
         self._count += 1
         return task
 
     def run(self, now: int) -> None:
-        """Call the due tasks, each only once even if longer time steps made it due more than once."""
+        """Call each task whose time has been reached once, even if several of its periods have passed."""
         while self._heap and self._heap[0][0] <= now:
             due, turn, task = self._heap[0]
             if task.cancelled:
@@ -57,6 +60,6 @@ class Schedule:
             task.function()
 
     def restart(self) -> None:
-        """Reschedule all tasks for a restart at time 0."""
+        """Reschedule all tasks, because simulated time restarts at 0."""
         self._heap = [(task.period, turn, task) for _, turn, task in self._heap]
         heapify(self._heap)

@@ -1,4 +1,4 @@
-"""A simulated world: its time, the models that are added and removed, and the state of all parts."""
+"""A simulated world: its time, its models and their states."""
 
 from __future__ import annotations
 
@@ -35,26 +35,26 @@ _SURELY = _BEYOND * _BEYOND
 
 
 class UnstableError(LinkwrightError):
-    """Raised when the simulation is unstable: a position or velocity is not finite, or exceeds all bounds (SIM120)."""
+    """Raised when a position or velocity is not finite or is out of bounds (SIM120)."""
 
 
 class Simulation:
     """A simulated world.
 
     The class never waits and does not use real time: `advance` computes as fast as it can, and the same calls give the
-    same bits. Only one thread at a time may use it.
+    same bits. Only one thread at a time may use a simulation.
 
     Args:
         world: the world, with its includes resolved.
-        finder: finds its meshes.
+        finder: the finder of mesh files.
         step: the time step in s; by default the time step of the world.
 
     Attributes:
         world: the parsed world, with its includes resolved and its saved state applied.
-        finder: finds meshes.
-        scene: the moving parts.
+        finder: the finder of mesh files.
+        scene: the MuJoCo specification of the world, with its models.
         model, data: MuJoCo's current model and data; both are replaced when models are added or removed.
-        revision: the number of times that they were rebuilt.
+        revision: the number of times that `model` and `data` were rebuilt.
         time: simulated nanoseconds since the start.
         step: the time step in nanoseconds.
         schedule: calls functions at simulated times.
@@ -98,12 +98,12 @@ class Simulation:
         return self.time / NANOSECONDS_PER_SECOND
 
     def spawn(self, model: Model, name: str, pose: Transform = IDENTITY) -> None:
-        """Add a model to the world; all others keep their state.
+        """Add a model to the world; the other models keep their state.
 
         Args:
             model: the model, with its includes resolved.
-            name: its name, which no other model has.
-            pose: the pose of its frame in the world.
+            name: the name of the model, which must be unique.
+            pose: the pose of the model's frame in the world.
 
         Raises:
             LinkwrightError: SIM102, there is already a model with this name.
@@ -131,7 +131,7 @@ class Simulation:
 
         Args:
             world: the other world, with its includes resolved.
-            finder: the finder of its meshes.
+            finder: the finder of the other world's meshes.
         """
         before, self.world, self.finder = self.world, as_saved(world), finder
         self._meshes.set_finder(finder)
@@ -145,7 +145,7 @@ class Simulation:
         return Simulation(world, finder, step=self._given_step)
 
     def place(self, poses: Mapping[str, Transform]) -> None:
-        """Set the initial poses of models, and move the models there; their joint positions stay.
+        """Set the initial poses of models, and move free models there; joint positions are kept.
 
         Args:
             poses: the pose of the frame of each model in the world, by the names of the models.
@@ -168,17 +168,17 @@ class Simulation:
         self._current = False
 
     def set_moved(self) -> None:
-        """Record that positions or velocities in `data` were set; dependent values are computed when needed."""
+        """Record that positions or velocities in `data` were set, so that dependent values are updated."""
         self._current = False
 
     def _jumped(self, body: Any) -> None:
-        """Record that a body of MuJoCo's model was moved to a place where it may overlap with others."""
+        """Record that a body of MuJoCo's model was placed where it may overlap with other bodies."""
         self._stepper.expect_overlaps()
         self._sleep.stir(int(self.model.body_treeid[body]))
         self._current = False
 
     def set_altered(self) -> None:
-        """Record that the specification of `scene` was changed; it is compiled when the model is needed."""
+        """Record that the specification of `scene` was changed, so that it is compiled before its next use."""
         self._changed = self._is_reshaped = True
 
     def free_links(self, name: str) -> list[str]:
@@ -196,7 +196,7 @@ class Simulation:
         return body.jntnum[0] == 1 and bool(self.model.jnt_type[body.jntadr[0]] == self._mujoco.mjtJoint.mjJNT_FREE)
 
     def add_velocity_motor(self, joint: str, gain: float, limit: float) -> Motor:
-        """Add a motor to a joint, as `Scene.add_velocity_motor` does."""
+        """Add a motor that holds the velocity of a joint; the arguments are those of the scene's method."""
         name = self.scene.add_velocity_motor(joint, gain, limit)
         self._changed = True
         return Motor(self, name)
@@ -207,7 +207,7 @@ class Simulation:
         self._changed = True
 
     def let_slide(self, joint: str) -> None:
-        """Let a wheel slide in all directions; its motor then only spins it."""
+        """Let a wheel slide in all directions, as if it had rollers; its motor then has no grip."""
         self.scene.let_slide(joint)
         self._changed = True
 
@@ -216,7 +216,8 @@ class Simulation:
 
         Args:
             joint: the name of the joint.
-            speed: the maximum speed in rad/s (m/s), unless the joint has a lower limit; 2 if neither limits it.
+            speed: the maximum speed in rad/s (m/s), unless the limit of the joint is lower. If both are infinite, the
+                maximum is 2.
         """
         servo = Servo(self, joint, self.scene.add_servo(joint), speed)
         self._arriving.append(servo)
@@ -224,7 +225,7 @@ class Simulation:
         return servo
 
     def keep_awake(self, link: str) -> None:
-        """Keep the tree of a link awake for sensors, because forces are not computed for sleeping bodies.
+        """Keep the bodies that move with a link awake, because sleeping bodies have no forces to measure.
 
         Raises:
             KeyError: there is no such link.
@@ -238,7 +239,7 @@ class Simulation:
             self._sleep.keep_awake(tree)
 
     def renew(self) -> None:
-        """Compile MuJoCo's model again if the scene has changed."""
+        """Recompile the MuJoCo model if the scene has changed."""
         if self._changed:
             self._set_model(*compile_scene(self.scene, (self.model, self.data)))
             self._bodies, self._joints = {}, {}
@@ -249,7 +250,7 @@ class Simulation:
                 servo.restart()
 
     def refresh(self) -> None:
-        """Call `renew`, and compute the values that depend on positions."""
+        """Call `renew`, and update the MuJoCo data that is derived from positions."""
         self.renew()
         if not self._current:
             mujoco, model, data = self._mujoco, self.model, self.data
@@ -261,7 +262,7 @@ class Simulation:
             self._current = True
 
     def _set_model(self, model: Any, data: Any) -> None:
-        """Replace MuJoCo's model and data."""
+        """Use another MuJoCo model and its data."""
         self.model, self.data = model, data
         self._state: tuple[Array, Array] = data.qpos, data.qvel
         self._stepper = Stepper(model, data)
@@ -269,9 +270,9 @@ class Simulation:
         self._solving.take(model, data, self.time, self.step)
 
     def reset(self) -> None:
-        """Restore the initial state; time restarts at 0."""
+        """Restore the initial state, and restart time at 0."""
         self.refresh()
-        self._solving.restart()  # first, because MuJoCo places static bodies only where bodies may sleep
+        self._solving.restart()  # first: MuJoCo places static bodies only if sleep is enabled
         self._mujoco.mj_resetData(self.model, self.data)
         self._stepper.expect_overlaps()
         self._pushes.clear()
@@ -280,13 +281,14 @@ class Simulation:
         self.schedule.restart()
 
     def advance(self, duration: int) -> None:
-        """Advance simulated time, calling scheduled functions when they are due.
+        """Advance simulated time, and call scheduled functions at their times.
 
         Args:
-            duration: the minimum time in nanoseconds; it is rounded up to whole steps.
+            duration: the minimum time in nanoseconds, which is rounded up to a multiple of the step.
 
         Raises:
-            UnstableError: a value in the simulation is no longer finite. The computation stops.
+            UnstableError: a position or velocity is no longer finite; the simulation stops.
+            LinkwrightError: SIM121, MuJoCo failed.
         """
         end = self.time + duration
         while self.time < end:
@@ -296,22 +298,22 @@ class Simulation:
             self.schedule.run(self.time)
 
     def call_every(self, period: int, function: Callable[[], None]) -> Task:
-        """Call a function periodically; the period is in simulated nanoseconds, 0 for after every step."""
+        """Call a function each `period`, in simulated nanoseconds; 0 means after every step."""
         return self.schedule.add(max(period, self.step), function, self.time)
 
     def _make_steps(self, count: int) -> None:
-        """Simulate steps with as little Python between them as possible, to be nearly as fast as MuJoCo alone."""
+        """Simulate a number of steps, with as little Python code per step as possible."""
         if self._changed:
             self.renew()
         mujoco, (positions, velocities) = self._mujoco, self._state
-        before = positions.tobytes(), velocities.tobytes()  # half the time of copying into arrays
+        before = positions.tobytes(), velocities.tobytes()  # takes half the time of copying arrays
         try:
             self._stepper.make_steps(count)
         except mujoco.FatalError as error:
             reason = str(error).splitlines()[0]
             raise LinkwrightError(Diagnostic("SIM121", phrase("MuJoCo failed: {said}", said=foreign(reason)))) from None
         self._current = False
-        dot = mujoco.mju_dot  # half the time of a comparison; numpy's dot warns of overflows
+        dot = mujoco.mju_dot  # takes half the time of a comparison; numpy's dot warns of overflows
         if not (dot(positions, positions) < _SURELY and dot(velocities, velocities) < _SURELY) and not self._is_sound():
             raise self._unstable(count, np.frombuffer(before[0]), np.frombuffer(before[1]))
         self.time += count * self.step
@@ -320,9 +322,9 @@ class Simulation:
         return all(bool((np.abs(state) < _BEYOND).all()) for state in self._state)
 
     def _unstable(self, count: int, positions: Array, velocities: Array) -> UnstableError:
-        """Return the error for a failure, found by stepping again from the last good state.
+        """Return the error for an unstable simulation, and restore the last step before the failure.
 
-        The error names the fastest body at that step. The state is left at the last step before the failure.
+        The last good state is simulated again to find this step; the error names the fastest body.
         """
         mujoco, model, data, before = self._mujoco, self.model, self.data, (positions, velocities)
         for _ in range(count):
@@ -375,7 +377,7 @@ class Simulation:
         return result[3:], result[:3]
 
     def mass_of(self, name: str) -> float:
-        """Return the mass in kg of everything in a model that moves with its first link.
+        """Return the mass in kg of a model's first link and of everything that moves with it.
 
         Raises:
             KeyError: there is no such model.
@@ -384,7 +386,7 @@ class Simulation:
         return float(self.model.body_subtreemass[self.model.body(self._root(name)[0]).id])
 
     def wheel_radius(self, link: str) -> float | None:
-        """Return the radius in m of a rolling wheel's collisions; None if they are not round.
+        """Return the radius in m of a wheel's round collisions, the largest of several; None if none is round.
 
         Raises:
             KeyError: there is no such link.
@@ -395,7 +397,7 @@ class Simulation:
         for geom in range(body.geomadr[0], body.geomadr[0] + body.geomnum[0]):
             if model.geom_group[geom] != COLLISION_GROUP:
                 continue
-            kind = int(model.geom_type[geom])  # numpy's integers are never equal to MuJoCo's enum members
+            kind = int(model.geom_type[geom])  # An integer of numpy never equals MuJoCo's enum.
             if kind == kinds.mjGEOM_ELLIPSOID:
                 radii.append(float(np.median(model.geom_size[geom])))
             elif kind in (kinds.mjGEOM_SPHERE, kinds.mjGEOM_CYLINDER):
@@ -403,7 +405,7 @@ class Simulation:
         return max(radii, default=None)
 
     def model_pose(self, name: str) -> Transform:
-        """Return the pose of a model's frame in the world; the frame moves with the first link."""
+        """Return the pose in the world of a model's frame, which moves with the model's first link."""
         root, offset = self._root(name)
         return compose(self.link_pose(root), invert(offset))
 
@@ -417,7 +419,9 @@ class Simulation:
         return self._is_free(self._root(name)[0])
 
     def set_model_pose(self, name: str, pose: Transform) -> None:
-        """Set the pose of a model, with zero velocity. This is the only way to move kinematic links.
+        """Set the pose of a model, and set its velocity to zero.
+
+        Kinematic links are moved only by this method.
 
         Raises:
             KeyError: there is no such model.
@@ -459,7 +463,7 @@ class Simulation:
         self._current = False
 
     def _root(self, name: str) -> tuple[str, Transform]:
-        """Return the first link of a model, and its pose in the frame of the model."""
+        """Return the name of a model's first link, and the link's pose in the frame of the model."""
         model = self.scene.models[name]
         first = model.structure.links[0].link
         return first.name, compose(invert(model.pose), first.pose)
@@ -470,7 +474,7 @@ class Simulation:
         Raises:
             KeyError: there is no such joint, or it does not move.
         """
-        if self._is_reshaped:  # not for motors: otherwise each of a hundred robots would recompile the model
+        if self._is_reshaped:  # Motors do not affect joints, so adding them does not recompile.
             self.renew()
         place = self._joints.get(name)
         if place is None:
@@ -480,22 +484,23 @@ class Simulation:
         return positions.item(place[0]), velocities.item(place[1])
 
     def set_joint_position(self, name: str, position: float) -> None:
-        """Set the position of a joint with one axis, with zero velocity."""
+        """Set the position of a joint with one axis, in rad (m), and set its velocity to zero."""
         self.refresh()
         joint = self.data.joint(name)
         joint.qpos[0], joint.qvel[0] = position, 0.0
         self._jumped(self.model.jnt_bodyid[joint.id])
 
     def push_joint(self, name: str, force: float) -> None:
-        """Set the torque in N m (force in N) on a joint with one axis; it acts until it is set again.
+        """Set the torque in N m (force in N) on a joint with one axis, which acts until it is set again.
 
-        It is bounded by the joint's ``<effort>``, and by the force that reaches its ``<velocity>`` within a step.
+        The torque is limited by the joint's ``<effort>``, and to the torque that reaches the joint's ``<velocity>``
+        within a step.
         """
         self.refresh()
         self.data.joint(name).qfrc_applied[0] = self._bounded(name, force)
 
     def _bounded(self, name: str, force: float) -> float:
-        """Return a joint force within the joint's limits, as in gz's engine DART.
+        """Return a joint force or torque clipped to the joint's limits, as in gz's engine DART.
 
         Limits of 0 or less are ignored.
         """
@@ -507,7 +512,7 @@ class Simulation:
         if isfinite(speed_limit):
             _, speed = self.joint_state(name)
             mass = 1.0 / float(model.dof_invweight0[model.jnt_dofadr[number]])
-            needed = mass * NANOSECONDS_PER_SECOND / self.step  # for a change of 1 rad/s (1 m/s) within a step
+            needed = mass * NANOSECONDS_PER_SECOND / self.step  # to change the speed by 1 rad/s (1 m/s) within a step
             force = min(max(force, min(-(speed_limit + speed) * needed, 0.0)), max((speed_limit - speed) * needed, 0.0))
         return force
 
@@ -519,9 +524,9 @@ class Simulation:
         *,
         by: str = "",
     ) -> None:
-        """Set the force in N and the torque in N m on the centre of mass of a link, in the axes of the world.
+        """Set the force in N and the torque in N m on the centre of mass of a link, in world axes.
 
-        They act until they are set again. Forces of several callers add up; `by` identifies the caller.
+        Force and torque act until they are set again. The forces of several callers add up; `by` identifies the caller.
         """
         self.refresh()
         acting = self._pushes.setdefault(link, {})
@@ -537,5 +542,5 @@ class Simulation:
 
 
 def _outlook(world: World) -> tuple[object, ...]:
-    """Return the properties of a world that require MuJoCo's model or its images to be rebuilt when they change."""
+    """Return the properties of a world for which a change requires MuJoCo's model to be rebuilt."""
     return gravity_of(world), physics_of(world).max_step_size, world.scene, world.lights

@@ -1,4 +1,4 @@
-"""Decide when bodies may fall asleep: MuJoCo skips them then, and their velocity is zero.
+"""Decides when bodies may fall asleep; MuJoCo skips sleeping bodies, whose velocity is zero.
 
 MuJoCo lets bodies sleep as soon as they are slow for ten steps. However, a pendulum is slow at its turning point, and
 so is any body that starts to move under a small force. Here a body may only sleep if its pose has not changed for a
@@ -27,7 +27,7 @@ _HARDLY = 1e-30
 
 
 class Sleep:
-    """Allows the trees of bodies in a simulation to fall asleep, or keeps them awake.
+    """Controls which trees of bodies in a simulation may fall asleep.
 
     Args:
         schedule: the schedule of the simulation.
@@ -41,7 +41,7 @@ class Sleep:
         self._data: Any = None
 
     def take(self, model: Any, data: Any, now: int, step: int) -> None:
-        """Use another model and its data.
+        """Use another model and its data, and wake all bodies.
 
         Args:
             model: MuJoCo's model.
@@ -65,7 +65,7 @@ class Sleep:
         self.wake()
 
     def rouse(self) -> None:
-        """Wake all bodies; bodies at rest fall asleep again after MuJoCo's ten steps."""
+        """Wake all bodies; a body at rest can fall asleep again after MuJoCo's ten steps."""
         data = self._data
         if self._model.nv:
             resting = (data.tree_asleep >= 0)[self._model.dof_treeid] & (data.qvel == 0.0)
@@ -78,14 +78,14 @@ class Sleep:
         self._allow()
 
     def stir(self, tree: int) -> None:
-        """Wake a tree that was moved or set in motion; -1 means a static body, which has no tree."""
+        """Wake a tree that was moved or set in motion; -1, for a static body without a tree, has no effect."""
         if tree >= 0:
             self._calm[tree] = 0
             self._allow()
             self.rouse()
 
     def keep_awake(self, tree: int) -> None:
-        """Wake a tree, and keep it from falling asleep."""
+        """Wake a tree, and prevent it from falling asleep again."""
         self._may[tree] = False
         self.wake()
 
@@ -110,10 +110,10 @@ class Sleep:
         self._allow()
 
     def _are_touching(self) -> Any:
-        """Return for each tree whether it touches something."""
+        """Return whether each tree has a contact, shape (trees,)."""
         model, contacts = self._model, self._data.contact
         geoms = contacts.geom[contacts.efc_address >= 0]
         geoms = geoms[geoms >= 0]
-        touching = np.zeros(model.ntree + 1, dtype=bool)  # the last item is for the world, whose tree is -1
+        touching = np.zeros(model.ntree + 1, dtype=bool)  # The last item is for static bodies, whose tree is -1.
         touching[model.body_treeid[model.geom_bodyid[geoms]]] = True
         return touching[:-1]

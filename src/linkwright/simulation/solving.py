@@ -1,4 +1,4 @@
-"""Choose how MuJoCo solves for forces: by islands of bodies in contact, or for all bodies if many robots drive.
+"""Selects how MuJoCo solves for forces: by islands of bodies in contact, or for all bodies together.
 
 Separate groups, called "islands", may fall asleep, so bodies at rest cost nothing. With the discrete integrator,
 however, MuJoCo processes all motors for each island, which doubles the time of a step with a hundred robots. The forces
@@ -27,11 +27,13 @@ _TOGETHER = 50
 
 
 class Solving:
-    """Chooses the solver of a simulation from its state only, so that the same calls give the same bits.
+    """Selects the solver of a simulation.
+
+    The selection depends only on the state of the simulation, so that the same calls give the same bits.
 
     Args:
         schedule: the schedule of the simulation.
-        sleep: decides when its bodies may sleep.
+        sleep: decides when bodies may sleep.
     """
 
     def __init__(self, schedule: Schedule, sleep: Sleep) -> None:
@@ -43,7 +45,7 @@ class Solving:
         self._data: Any = None
 
     def take(self, model: Any, data: Any, now: int, step: int) -> None:
-        """Use another model, which is solved island by island, and its data.
+        """Use another model and its data, which is initially solved by islands.
 
         Args:
             model: MuJoCo's model.
@@ -58,7 +60,7 @@ class Solving:
             self._task = self._schedule.add(_LOOK * step, self._look, now)
 
     def restart(self) -> None:
-        """Restart with the simulation."""
+        """Return to solving by islands, because the simulation restarts."""
         if self._left:
             self._set(together=False)
 

@@ -1,4 +1,4 @@
-"""Modules with the names and interfaces of ROS 2 modules that are not installed."""
+"""Modules that have the names and interfaces of ROS 2 modules, which need not be installed."""
 
 from linkwright.standins.activation import activate
 

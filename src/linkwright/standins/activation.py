@@ -1,4 +1,4 @@
-"""Make our modules importable as ``launch``, ``rclpy`` and so on."""
+"""Makes our modules importable as ``launch``, ``rclpy`` and so on."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ ROS: the real ones would need their own launcher."""
 def activate() -> None:
     """Make the modules for launch files importable; may be called repeatedly.
 
-    The folder of the tables is last on ``sys.path``: an installed module takes precedence over ours, except for
-    `LAUNCH_MODULES`. Processes that launch files start find the stand-ins too.
+    The folder of the tables is last on ``sys.path``. An installed module therefore takes precedence over ours, unless
+    its package is in `LAUNCH_MODULES`. The stand-ins are also importable in the processes that launch files start.
     """
     modules.install()
     if modules.FOLDER not in sys.path:
@@ -42,9 +42,9 @@ def activate() -> None:
 
 
 class _LazyInterfaceFinder:
-    """Makes modules such as ``std_msgs.msg`` importable on the first import that no other finder resolves.
+    """Installs the interface finders on the first import of a module such as ``std_msgs.msg``.
 
-    It implements the finder method without the base class, which is slow to import.
+    It is last on ``sys.meta_path``, and does not derive from the abstract base class, which is slow to import.
     """
 
     def find_spec(
@@ -53,19 +53,19 @@ class _LazyInterfaceFinder:
         path: Sequence[str] | None = None,
         target: ModuleType | None = None,
     ) -> ModuleSpec | None:
-        """Return the spec of a module that contains interfaces, or None."""
+        """Return the spec of an interface module, or None for another module."""
         if not _may_be_interfaces(fullname):
             return None
         from linkwright.standins import interfaces
 
         if any(isinstance(finder, interfaces.InterfaceFinder) for finder in sys.meta_path):
-            return None  # the import system asks that finder next
+            return None  # the import system calls that finder next
         interfaces.install()
         return interfaces.find_spec(fullname)
 
 
 class _ModulesOfWorkspace:
-    """Finds Python modules in the workspace's packages, for launch files and for users' modules that they import."""
+    """Finds Python modules of the workspace's packages for users' launch files and modules."""
 
     def find_spec(
         self,
@@ -86,7 +86,10 @@ class _ModulesOfWorkspace:
 
 
 def _importing_file() -> Path | None:
-    """Return the user's file that runs the current import; None for a library, whose import may be optional."""
+    """Return the user's file that runs the current import.
+
+    The result is None if a library runs the import, because a library may import a module optionally.
+    """
     from linkwright.packages.programs.code_files import is_users
 
     frame = sys._getframe(2)
@@ -96,7 +99,7 @@ def _importing_file() -> Path | None:
 
 
 def _may_be_interfaces(name: str) -> bool:
-    """Return whether a module may contain messages, so that loading their classes is worthwhile."""
+    """Return whether a module may contain interfaces, so that the interface finder must be asked."""
     package, _, kind = name.partition(".")
     if kind:
         return kind in ("msg", "srv", "action")
@@ -107,14 +110,14 @@ def _may_be_interfaces(name: str) -> bool:
 
 
 def _provide_for_processes() -> None:
-    """Make our modules importable in the processes that launch files start."""
+    """Make our modules importable in processes that launch files start."""
     from linkwright.packages.programs import child_python as surroundings
 
     surroundings.register_launcher(_environment, _python_command)
 
 
 def _environment(base: Mapping[str, str]) -> Mapping[str, str]:
-    from linkwright.standins import process  # imported when the first process is started
+    from linkwright.standins import process  # imported late, when the first process is started
 
     return process.environment(base)
 

@@ -1,4 +1,4 @@
-"""Convert between image messages and numpy arrays in OpenCV's layout (the API of ``cv_bridge``), without OpenCV."""
+"""Converts between image messages and numpy arrays, without OpenCV (the API of ``cv_bridge``)."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _JPEG_QUALITY = 95  # OpenCV's default
 
 
 class CvBridgeError(TypeError):
-    """Raised when an image cannot be converted; the message gives the reason."""
+    """Raised when an image cannot be converted; the message states the reason."""
 
 
 def getCvType(encoding_name: str) -> int:  # name as in cv_bridge
@@ -40,12 +40,12 @@ def getCvType(encoding_name: str) -> int:  # name as in cv_bridge
 
 
 class CvBridge:
-    """Converts between sensor_msgs images and arrays.
+    """Converts between sensor_msgs images and numpy arrays.
 
     Attributes:
-        cvtype_to_name: OpenCV's type number -> its name without ``CV_``, such as ``8UC3``.
-        cvdepth_to_numpy_depth: OpenCV's depth number -> numpy's name.
-        numpy_type_to_cvtype: numpy's name of a depth -> OpenCV's name, and vice versa.
+        cvtype_to_name: OpenCV's type number -> type name without ``CV_``, such as ``8UC3``.
+        cvdepth_to_numpy_depth: OpenCV's depth number -> name of the numpy type.
+        numpy_type_to_cvtype: name of the numpy type -> OpenCV's depth name, and vice versa.
     """
 
     def __init__(self) -> None:
@@ -59,23 +59,27 @@ class CvBridge:
         self.numpy_type_to_cvtype |= dict(zip(DEPTHS, NUMPY_NAMES, strict=True))
 
     def dtype_with_channels_to_cvtype2(self, dtype: np.dtype[Any], n_channels: int) -> str:
-        """Return OpenCV's name of a pixel type, such as ``8UC3``."""
+        """Return OpenCV's name of a pixel type, such as ``8UC3``, for a numpy type."""
         return f"{self.numpy_type_to_cvtype[dtype.name]}C{n_channels}"
 
     def cvtype2_to_dtype_with_channels(self, cvtype: int) -> tuple[str, int]:
-        """Return numpy's name of the depth and the number of channels for OpenCV's type number."""
+        """Return the name of the numpy type and the number of channels for OpenCV's type number."""
         depth, channels = depth_and_channels(cvtype)
         return self.numpy_type_to_cvtype[depth], channels
 
     def encoding_to_cvtype2(self, encoding: str) -> int:
-        """Return OpenCV's type number for an encoding, as `getCvType` does; CvBridgeError for an unknown one."""
+        """Return OpenCV's type number for an encoding, as `getCvType` does.
+
+        Raises:
+            CvBridgeError: the encoding is unknown.
+        """
         try:
             return getCvType(encoding)
         except ConversionError as error:
             raise CvBridgeError(error) from error
 
     def encoding_to_dtype_with_channels(self, encoding: str) -> tuple[str, int]:
-        """Return numpy's name of the depth and the number of channels for an encoding."""
+        """Return the name of the numpy type and the number of channels for an encoding."""
         return self.cvtype2_to_dtype_with_channels(self.encoding_to_cvtype2(encoding))
 
     def imgmsg_to_cv2(self, img_msg: Any, desired_encoding: str = "passthrough") -> NDArray[Any]:
@@ -83,13 +87,13 @@ class CvBridge:
 
         Args:
             img_msg: the message.
-            desired_encoding: the encoding of the result; ``passthrough`` for the encoding of the message.
+            desired_encoding: the encoding of the result; ``passthrough`` to keep the encoding of the message.
 
         Returns:
-            Shape (height, width), or (height, width, channels) for several channels.
+            An array of shape (height, width), or (height, width, channels) for several channels.
 
         Raises:
-            CvBridgeError: an encoding is unknown, or the image cannot be converted to the desired one.
+            CvBridgeError: an encoding is unknown, or the image cannot be converted to the desired encoding.
             TypeError: the message has too few bytes.
         """
         name, channels = self.encoding_to_dtype_with_channels(img_msg.encoding)
@@ -104,9 +108,9 @@ class CvBridge:
         """Convert an array to a sensor_msgs/msg/Image.
 
         Args:
-            cvim: shape (height, width) or (height, width, channels).
-            encoding: the encoding of the array; ``passthrough`` for its plain type.
-            header: the header of the message, if given.
+            cvim: the pixels, of shape (height, width) or (height, width, channels).
+            encoding: the encoding of the array; ``passthrough`` for OpenCV's name of its type, such as ``8UC3``.
+            header: the header of the message; None for an empty header.
 
         Raises:
             TypeError: `cvim` is not an array.
@@ -131,17 +135,17 @@ class CvBridge:
         return message
 
     def compressed_imgmsg_to_cv2(self, cmprs_img_msg: Any, desired_encoding: str = "passthrough") -> NDArray[Any]:
-        """Decode a sensor_msgs/msg/CompressedImage to 8-bit pixels: grey, or blue, green and red.
+        """Decode a sensor_msgs/msg/CompressedImage to an array of 8-bit pixels.
 
         Args:
             cmprs_img_msg: the message.
-            desired_encoding: the encoding of the result, converted from ``bgr8``; ``passthrough`` for the encoding of
-                the file.
+            desired_encoding: the encoding to convert to from ``bgr8``; ``passthrough`` for the channels of the file,
+                which are grey, or blue, green and red.
 
         Raises:
-            CvBridgeError: the data is not an image, or it cannot be converted.
+            CvBridgeError: the data is not an image, or the image cannot be converted.
         """
-        from PIL import Image, UnidentifiedImageError  # an optional extra, needed only here
+        from PIL import Image, UnidentifiedImageError  # an optional dependency, imported only when needed
 
         try:
             with Image.open(io.BytesIO(bytes(cmprs_img_msg.data))) as opened:
@@ -156,7 +160,7 @@ class CvBridge:
         """Encode an array as a sensor_msgs/msg/CompressedImage.
 
         Args:
-            cvim: shape (height, width), or (height, width, 3 or 4) with blue first, of 8 bits.
+            cvim: 8-bit pixels of shape (height, width), or (height, width, 3 or 4) with the blue channel first.
             dst_format: the format, as a file suffix: ``jpg``, ``png``, ``bmp``, ``webp``, ``tiff``...
 
         Raises:

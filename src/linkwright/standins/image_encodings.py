@@ -21,21 +21,21 @@ _COLOUR = re.compile(r"(mono|rgb|bgr|rgba|bgra)(8|16)|bayer_(rggb|bggr|gbrg|grbg
 _PACKED_YUV = {"yuv422": "uyvy", "uyvy": "uyvy", "yuv422_yuy2": "yuyv", "yuyv": "yuyv"}
 _CHANNELS = {"mono": 1, "rgb": 3, "bgr": 3, "rgba": 4, "bgra": 4}
 
-# OpenCV's weights of the colours in grey: ITU-R BT.601 in units of 1/32768.
+# The weights of red, green and blue in a grey value, as in OpenCV: ITU-R BT.601 in units of 1/32768.
 _GREY_SHIFT = 15
 _RED, _GREEN, _BLUE = 9798, 19235, 3735
 
 
 class ConversionError(RuntimeError):
-    """Raised when an encoding is unknown or a conversion is not possible; the message gives the reason."""
+    """Raised when an encoding is unknown or a conversion is not possible; states the reason."""
 
 
 @dataclass(frozen=True, slots=True)
 class Encoding:
-    """The properties of an encoding.
+    """An image encoding.
 
     Attributes:
-        name: its name in messages.
+        name: the name of the encoding in messages.
         depth: OpenCV's name of the depth.
         channels: the number of channels.
         order: the order of the channels: ``mono``, ``rgb``, ``bgra``, ``bayer_rggb``, ``yuyv``...; empty for plain
@@ -72,7 +72,7 @@ def encoding(name: str) -> Encoding:
 
 
 def depth_and_channels(cv_type: int) -> tuple[str, int]:
-    """Return the depth's name and the number of channels for OpenCV's type number."""
+    """Return OpenCV's name of the depth and the number of channels for a type number."""
     return DEPTHS[cv_type & ((1 << _CHANNEL_SHIFT) - 1)], (cv_type >> _CHANNEL_SHIFT) + 1
 
 
@@ -80,8 +80,8 @@ def convert_image(image: NDArray[Any], source: str, wanted: str) -> NDArray[Any]
     """Return a copy of an image in another encoding.
 
     Args:
-        image: shape (height, width), or (height, width, channels) for several channels.
-        source: the name of its encoding.
+        image: the pixels, of shape (height, width), or (height, width, channels) for several channels.
+        source: the name of the image's encoding.
         wanted: the name of the target encoding.
 
     Raises:
@@ -102,7 +102,7 @@ def convert_image(image: NDArray[Any], source: str, wanted: str) -> NDArray[Any]
 
 
 def _in_order(image: NDArray[Any], of: Encoding, order: str) -> NDArray[Any]:
-    """Return an image with its channels reordered, added or removed."""
+    """Return an image with the channels in another order, where channels may be added or dropped."""
     if of.order == order:
         return image
     if of.order == "mono":
@@ -124,7 +124,7 @@ def _in_order(image: NDArray[Any], of: Encoding, order: str) -> NDArray[Any]:
 
 
 def _to_rgb(image: NDArray[Any], of: Encoding) -> NDArray[Any]:
-    """Return an image in a Bayer or YUV encoding as RGB; other images are returned unchanged."""
+    """Convert an image in a Bayer or YUV encoding to RGB; return any other image unchanged."""
     if of.order.startswith("bayer_"):
         if of.depth != "8U":
             raise ConversionError(f"Unsupported conversion from [{of.name}]: only mosaics of 8 bits are read")
@@ -135,7 +135,10 @@ def _to_rgb(image: NDArray[Any], of: Encoding) -> NDArray[Any]:
 
 
 def _convert_depth(image: NDArray[Any], of: Encoding, to: Encoding) -> NDArray[Any]:
-    """Return an image converted to another depth; black and white are preserved between unsigned 8 and 16 bits."""
+    """Return an image converted to another depth.
+
+    Between unsigned 8 and 16 bits the values are scaled, so that black and white are preserved.
+    """
     dtype = np.dtype(NUMPY_NAMES[DEPTHS.index(to.depth)])
     if image.dtype == dtype:
         return np.array(image, order="C")

@@ -1,7 +1,7 @@
-"""The linters that the tests of a new Python package call: ``ament_flake8``, ``ament_pep257`` and ``ament_copyright``.
+"""The ament linters that the tests of a new Python package call.
 
-The first two run flake8 and pydocstyle with the settings of ``ament_lint``. If the program is not installed, the
-test that needs it is skipped, with a reason that names the program.
+These are ``ament_flake8``, ``ament_pep257`` and ``ament_copyright``. The first two run flake8 and pydocstyle with the
+settings of ``ament_lint``. If the program is not installed, the test is skipped, with a reason that names the program.
 """
 
 from __future__ import annotations
@@ -30,16 +30,16 @@ _LICENSE = re.compile(
 
 
 def flake8(argv: Sequence[str] | None = None) -> int:
-    """Run flake8 on a package; return 0 if it finds nothing, else 1.
+    """Run flake8 on a package; return 0 if there are no findings, else 1.
 
     Args:
-        argv: options and paths of the command ``ament_flake8``; the arguments of this process if omitted.
+        argv: options and paths of the command ``ament_flake8``; None for the arguments of this process.
     """
     return flake8_with_errors(argv)[0]
 
 
 def flake8_with_errors(argv: Sequence[str] | None = None) -> tuple[int, list[str]]:
-    """Run flake8 on a package; return the exit status and one line for each finding."""
+    """Run flake8 on a package, and return the exit status and one line per finding."""
     parser = _parser("ament_flake8")
     parser.add_argument("--config")
     parser.add_argument("--linelength", type=int)
@@ -56,10 +56,10 @@ def flake8_with_errors(argv: Sequence[str] | None = None) -> tuple[int, list[str
 
 
 def pep257(argv: Sequence[str] | None = None) -> int:
-    """Run pydocstyle on a package; return 0 if it finds nothing, else 1.
+    """Run pydocstyle on a package; return 0 if there are no findings, else 1.
 
     Args:
-        argv: options and paths of the command ``ament_pep257``; the arguments of this process if omitted.
+        argv: options and paths of the command ``ament_pep257``; None for the arguments of this process.
     """
     parser = _parser("ament_pep257")
     for name in ("--ignore", "--select", "--add-ignore", "--add-select"):
@@ -77,10 +77,10 @@ def pep257(argv: Sequence[str] | None = None) -> int:
 
 
 def copyright_headers(argv: Sequence[str] | None = None) -> int:
-    """Check each source file for a copyright notice and a licence; return 0 if all have them, else 1.
+    """Check each source file for a copyright notice and a licence; return 0 if all have both, else 1.
 
     Args:
-        argv: paths and options of the command ``ament_copyright``; the arguments of this process if omitted.
+        argv: paths and options of the command ``ament_copyright``; None for the arguments of this process.
     """
     files = [path for path in _files(_parser("ament_copyright").parse_args(argv)) if not _is_setup_of_package(path)]
     findings = []
@@ -108,7 +108,10 @@ def _more_codes(options: argparse.Namespace) -> Iterator[tuple[str, list[str]]]:
 
 
 def _files(options: argparse.Namespace) -> list[Path]:
-    """Return the source files below the paths, except excluded files and hidden or AMENT_IGNORE folders."""
+    """Return the source files below the paths.
+
+    Excluded files, hidden folders and folders with ``AMENT_IGNORE`` are skipped.
+    """
     excluded = {path.resolve() for path in options.exclude}
     found: set[Path] = set()
     for start in options.paths:
@@ -126,12 +129,15 @@ def _is_setup_of_package(path: Path) -> bool:
 
 
 def _run(module: str, settings: Sequence[str], files: Sequence[Path]) -> tuple[int, list[str]]:
-    """Run a linter on files; return its exit status and output, or skip the test if it is not installed."""
+    """Run a linter on files, and return the exit status and the lines of its output.
+
+    If the linter is not installed, the running test is skipped.
+    """
     if not files:
         return 0, []
     if find_spec(module) is None:
         _skip(f"{module} is not installed beside pytest")
-    # The files are the user's own, and the program is one that they installed.
+    # The files belong to the user, and the user installed the program.
     command = [sys.executable, "-m", module, *settings, *map(str, files)]
     ended = subprocess.run(command, capture_output=True, encoding="utf-8", check=False)  # noqa: S603
     print(ended.stdout, end="")
@@ -140,6 +146,6 @@ def _run(module: str, settings: Sequence[str], files: Sequence[Path]) -> tuple[i
 
 
 def _skip(reason: str) -> None:
-    import pytest  # imported here because a test calls the linter, so pytest is running
+    import pytest  # imported here; a test calls this function, so pytest is already loaded
 
     pytest.skip(reason)

@@ -1,4 +1,4 @@
-"""Filters that forward, cache or synchronize messages of topics (the API of ``message_filters``).
+"""Filters that forward, cache or synchronize messages (the API of ``message_filters``).
 
 The matching and its order follow the Python modules of ``message_filters`` of Humble to Kilted.
 """
@@ -21,40 +21,40 @@ _HEADERLESS = (
 
 
 class SimpleFilter:
-    """The base of filters: an output that callbacks and other filters connect to.
+    """The base class of filters: an output to which callbacks and other filters are connected.
 
     Attributes:
-        callbacks: registration number -> the callback, and the arguments that follow the filter's output.
+        callbacks: registration number -> the callback and its additional arguments.
     """
 
     def __init__(self) -> None:
         self.callbacks: dict[int, tuple[Callable[..., object], tuple[Any, ...]]] = {}
 
     def registerCallback(self, cb: Callable[..., object], *args: Any) -> int:
-        """Register a callback for each output; return its number in `callbacks`.
+        """Register a callback for each output, and return the key of its entry in `callbacks`.
 
         Args:
-            cb: the callback, called with the output and then `args`.
-            args: further arguments of the callback.
+            cb: the callback, called with the output followed by `args`.
+            args: additional arguments of the callback.
         """
         number = len(self.callbacks)
         self.callbacks[number] = (cb, args)
         return number
 
     def signalMessage(self, *msg: Any) -> None:
-        """Pass a message, or a set of messages, to the callbacks."""
+        """Call the callbacks with a message, or with the messages of a set."""
         for callback, arguments in tuple(self.callbacks.values()):
             callback(*msg, *arguments)
 
 
 class Subscriber(SimpleFilter):
-    """A subscription as the first filter of a chain; it also has the attributes of the subscription.
+    """A subscription as the first filter of a chain, with the attributes of the subscription.
 
     Args:
         node: the node that subscribes.
         msg_type: the message class.
         topic: the name of the topic.
-        qos_profile: the requested profile; a number is a depth.
+        qos_profile: the requested profile, or the depth of the queue.
         arguments: further arguments of ``Node.create_subscription``.
     """
 
@@ -69,7 +69,7 @@ class Subscriber(SimpleFilter):
         self.signalMessage(msg)
 
     def getTopic(self) -> str:
-        """Return the name of the topic as given."""
+        """Return the name of the topic as given to the constructor."""
         return self.topic
 
     def __getattr__(self, key: str) -> Any:
@@ -83,8 +83,8 @@ class Cache(SimpleFilter):
 
     Args:
         f: the filter.
-        cache_size: the number of messages to keep.
-        allow_headerless: whether to accept messages without a stamp and use their time of arrival.
+        cache_size: the maximum number of messages.
+        allow_headerless: whether to accept messages without a stamp, for which the time of arrival is used.
     """
 
     def __init__(self, f: SimpleFilter, cache_size: int = 1, allow_headerless: bool = False) -> None:
@@ -96,11 +96,11 @@ class Cache(SimpleFilter):
         self.connectInput(f)
 
     def connectInput(self, f: SimpleFilter) -> None:
-        """Cache the messages of another filter."""
+        """Connect the cache to the filter whose messages it caches."""
         self.incoming_connection = f.registerCallback(self.add)
 
     def add(self, msg: Any) -> None:
-        """Add a message, and drop the oldest if there are too many."""
+        """Add a message, and drop the oldest one if the cache is full."""
         stamp = _time_of(msg, allow_headerless=self.allow_headerless, logger="message_filters_cache")
         if stamp is None:
             return
@@ -110,7 +110,7 @@ class Cache(SimpleFilter):
         self.signalMessage(msg)
 
     def getInterval(self, from_stamp: Time, to_stamp: Time) -> list[Any]:
-        """Return the messages in a closed time interval."""
+        """Return the messages in a time interval that includes both limits."""
         assert from_stamp <= to_stamp, "the interval ends before it begins"
         return [msg for msg, time in self._stamped_messages() if from_stamp <= time <= to_stamp]
 
@@ -124,17 +124,17 @@ class Cache(SimpleFilter):
         return older[-1] if older else None
 
     def getLatestTime(self) -> Time | None:
-        """Return the time of the last message, or None."""
+        """Return the time of the newest message, or None if the cache is empty."""
         return self.cache_times[-1] if self.cache_times else None
 
-    getLastestTime = getLatestTime  # the name in Humble and Jazzy
+    getLastestTime = getLatestTime  # the misspelt name in Humble and Jazzy
 
     def getOldestTime(self) -> Time | None:
-        """Return the time of the first message, or None."""
+        """Return the time of the oldest message, or None if the cache is empty."""
         return self.cache_times[0] if self.cache_times else None
 
     def getLast(self) -> Any:
-        """Return the message with the latest time, or None."""
+        """Return the newest message, or None if the cache is empty."""
         latest = self.getLatestTime()
         return None if latest is None else self.getElemAfterTime(latest)
 
@@ -160,7 +160,7 @@ class TimeSynchronizer(SimpleFilter):
         self.connectInput(fs)
 
     def connectInput(self, fs: Sequence[SimpleFilter]) -> None:
-        """Synchronize the messages of the given filters."""
+        """Connect the synchronizer to the filters whose messages it matches."""
         self.queues: list[dict[int, Any]] = [{} for _ in fs]
         self.input_connections = [
             input_filter.registerCallback(self.add, queue, index)
@@ -168,7 +168,7 @@ class TimeSynchronizer(SimpleFilter):
         ]
 
     def add(self, msg: Any, my_queue: dict[int, Any], my_queue_index: int | None = None) -> None:
-        """Add a message of one of the filters, and output the set if this message completes one."""
+        """Add a message of one of the filters, and output a set if the message completes one."""
         with self.lock:
             self._store(msg, my_queue, _time(msg.header.stamp).nanoseconds)
             common = set(self.queues[0]).intersection(*self.queues[1:])
@@ -189,8 +189,8 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
         fs: the filters.
         queue_size: the maximum number of queued messages of each filter.
         slop: the maximum difference of the stamps in a set, in seconds.
-        allow_headerless: whether to accept messages without a stamp and use their time of arrival.
-        sync_arrival_time: whether to use the time of arrival for all messages.
+        allow_headerless: whether to accept messages without a stamp, for which the time of arrival is used.
+        sync_arrival_time: whether to use the time of arrival instead of the stamp for all messages.
     """
 
     def __init__(
@@ -207,7 +207,7 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
         self.sync_arrival_time = sync_arrival_time
 
     def add(self, msg: Any, my_queue: dict[int, Any], my_queue_index: int | None = None) -> None:
-        """Add a message of one of the filters, and output the set of nearest messages if it completes one."""
+        """Add a message of one of the filters, and output the set of closest messages, if complete."""
         if self.sync_arrival_time:
             time: Time | None = ROSClock().now()
         else:
@@ -222,7 +222,10 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
             self.signalMessage(*match)
 
     def _match(self, stamp: int, own: int | None) -> tuple[int, ...] | None:
-        """Return the stamps of the messages that match a new one, in the order of the filters."""
+        """Return the stamps of the messages that match a new message, in the order of the filters.
+
+        The result is None if a filter has no matching message.
+        """
         slop = self.slop.nanoseconds
         choices = []
         for index, queue in enumerate(self.queues):
@@ -237,7 +240,10 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
 
 
 def _time_of(msg: Any, *, allow_headerless: bool, logger: str) -> Time | None:
-    """Return the stamp of a message, or its time of arrival if allowed; otherwise warn and return None."""
+    """Return the stamp of a message, or its time of arrival if `allow_headerless` is set.
+
+    If neither is available, a warning is logged and the result is None.
+    """
     stamp = getattr(getattr(msg, "header", None), "stamp", None)
     if stamp is not None:
         return _time(stamp)

@@ -1,8 +1,8 @@
-"""Create the modules that the tables describe, so that ``from launch.actions import Shutdown`` works.
+"""Creates the modules that the tables describe, for imports such as ``from launch.actions import Shutdown``.
 
-`FOLDER` is a virtual folder for Python's path finder. It contains every package that has a table; ``FOLDER/launch``
-contains the modules of ``launch``. Earlier entries of ``sys.path`` take precedence, package by package, and `pkgutil`
-lists the modules like files. A name is imported on first use, from the origin that the table gives.
+`FOLDER` is a virtual folder for Python's path finder. `FOLDER` contains every package that has a table, and
+``FOLDER/launch`` contains the modules of ``launch``. Earlier entries of ``sys.path`` take precedence, package by
+package. `pkgutil` lists the modules like files. A name is imported on first use, from the origin in the table.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ def install() -> None:
 
 
 def find_spec(name: str) -> ModuleSpec | None:
-    """Return the spec of a module, or None if no table has the module."""
+    """Return the spec of a module, or None if no table describes the module."""
     found = table.find(name)
     if found is None:
         return None
@@ -53,14 +53,18 @@ def is_ours(module: ModuleType | None) -> bool:
 
 
 def _finder_of(path: str) -> _Finder:
-    """Return the finder for a path entry; this function is a path hook of Python."""
+    """Return the finder for an entry of ``sys.path``, as a path hook of Python.
+
+    Raises:
+        ImportError: the entry is not in `FOLDER`.
+    """
     if path != FOLDER and not path.startswith(FOLDER + os.sep):
         raise ImportError(f"{path!r} holds no stand-ins", path=path)
     return _Finder(path[len(FOLDER) + 1 :].replace(os.sep, "."))
 
 
 class _Finder:
-    """Finds the modules of one package, or the packages that have a table."""
+    """Finds the modules of one package, or all packages that have a table."""
 
     def __init__(self, package: str) -> None:
         self._package = package
@@ -85,15 +89,15 @@ class _Loader:
         self._described = described
 
     def homes(self, name: str) -> list[str]:
-        """Return the modules that have a name, for the error message of a module that lacks it."""
+        """Return the modules that provide a name, for the error message if another module lacks it."""
         return table.modules_providing(name)
 
     def create_module(self, spec: ModuleSpec) -> ModuleType | None:
-        """Return None, so that Python creates its default module."""
+        """Return None, so that Python creates a module object."""
         return None
 
     def exec_module(self, module: ModuleType) -> None:
-        """Set up the names of the module."""
+        """Fill the module with functions that import its names on first use."""
         described = self._described
         module.__doc__ = f"A stand-in for ``{described.name}``."
         names = {**dict.fromkeys(described.names), **dict.fromkeys(described.submodules)}
@@ -115,9 +119,9 @@ class _Loader:
         vars(module).update(own_names, __all__=described.public)
         for name in described.submodules:
             if name in described.names and described.names[name].origin != table.IMPORT:
-                # The function has the same name as its submodule. Import the submodule first; otherwise a later import
-                # would replace the
-                # function with the module.
+                # If a function has the name of its submodule, import the submodule first. Otherwise a later import of
+                # the submodule
+                # would replace the function with the module.
                 importlib.import_module(f"{described.name}.{name}")
                 setattr(module, name, value_of(described, name))
         if described.setup:
@@ -126,11 +130,11 @@ class _Loader:
 
 
 def value_of(module: table.Module, name: str) -> Any:
-    """Return the value of a name in a module.
+    """Return the object that a module provides under a name.
 
     Raises:
         ImportError: the module that defines the name cannot be imported.
-        AttributeError: that module does not define it.
+        AttributeError: that module does not define the name.
     """
     found = module.names[name]
     if found.origin == table.IMPORT:

@@ -1,4 +1,4 @@
-"""Convert between point clouds and numpy arrays (the API of ``sensor_msgs_py.point_cloud2``)."""
+"""Converts between point clouds and numpy arrays (the API of ``sensor_msgs_py.point_cloud2``)."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ _FLOAT32 = 7
 def dtype_from_fields(
     fields: Iterable[Any], point_step: int | None = None, *, is_bigendian: bool = False
 ) -> np.dtype[Any]:
-    """Return the numpy type of a point.
+    """Return the structured numpy type of a point.
 
     Args:
         fields: the fields of a point (sensor_msgs/msg/PointField). A field with a count of n becomes n fields.
-        point_step: bytes from one point to the next; None for the size of the fields.
+        point_step: the distance between two points, in bytes; None for the size of the fields.
         is_bigendian: whether numbers are big-endian.
     """
     order = ">" if is_bigendian else "<"
@@ -54,7 +54,7 @@ def read_points(
     """Return the points of a cloud as a structured array.
 
     Args:
-        cloud: sensor_msgs/msg/PointCloud2.
+        cloud: the point cloud (sensor_msgs/msg/PointCloud2).
         field_names: the fields to read; None for all.
         skip_nans: whether to skip points with NaN in one of the fields.
         uvs: the points to read, as indices or as pairs of column and row; None for all.
@@ -86,10 +86,10 @@ def read_points_numpy(
     uvs: Iterable[Any] | None = None,
     reshape_organized_cloud: bool = False,
 ) -> NDArray[Any]:
-    """Return the points of a cloud as an array with one column for each field; see `read_points`.
+    """Return the points of a cloud as an array with one column per field; see `read_points`.
 
     Raises:
-        AssertionError: the fields do not all have the same type, or one is missing.
+        AssertionError: the fields have different types, or a field is missing.
     """
     points = read_points(cloud, field_names, skip_nans, uvs, reshape_organized_cloud)
     if len({points.dtype[name] for name in _names(points.dtype)}) > 1:
@@ -112,11 +112,11 @@ def create_cloud(
     """Create a point cloud (sensor_msgs/msg/PointCloud2).
 
     Args:
-        header: its stamp and frame (std_msgs/msg/Header).
+        header: the stamp and frame of the cloud (std_msgs/msg/Header).
         fields: the fields of a point (sensor_msgs/msg/PointField).
         points: rows with a value for each field, or a structured array; an array of width by height becomes an
             organized cloud.
-        step: bytes from one point to the next; None for the size of the fields.
+        step: the distance between two points, in bytes; None for the size of the fields.
 
     Raises:
         AssertionError: the points do not have these fields.
@@ -152,7 +152,7 @@ def _names(dtype: np.dtype[Any]) -> tuple[str, ...]:
 
 
 def _rows(cloud: Any, dtype: np.dtype[Any]) -> NDArray[Any]:
-    """Return the points of a cloud in sequence, without the padding at the ends of rows."""
+    """Return the points of a cloud as a flat array, without the padding at the ends of rows."""
     data = np.frombuffer(cloud.data, np.uint8)
     width, height = cloud.width, cloud.height
     if height > 1 and cloud.row_step > width * dtype.itemsize:
@@ -187,7 +187,10 @@ def _structured(points: Iterable[Any] | NDArray[Any], dtype: np.dtype[Any]) -> N
 
 
 def _filled(points: list[Any] | NDArray[Any], dtype: np.dtype[Any]) -> NDArray[Any]:
-    """Return a structured array with zeros in the gaps between fields, which numpy does not initialise."""
+    """Convert points to a structured array whose gaps between fields are zero.
+
+    numpy does not initialise these gaps.
+    """
     rows = np.zeros(np.shape(points)[:1] if isinstance(points, list) else points.shape, dtype)
     rows[...] = points
     return rows

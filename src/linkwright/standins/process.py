@@ -1,4 +1,7 @@
-"""Commands and environments for users' programs: ``import rclpy`` finds ours if no real one is installed."""
+"""Commands and environments for users' programs, in which ``import rclpy`` finds our module.
+
+An installed rclpy takes precedence.
+"""
 
 from __future__ import annotations
 
@@ -18,10 +21,10 @@ _NEEDED = ("linkwright", "numpy", "PIL", "yaml", "rosbags", "cyclonedds", "zenoh
 
 
 def standin_path() -> str:
-    """Return the folder to put on ``PYTHONPATH``.
+    """Return the folder to add to ``PYTHONPATH``.
 
-    It contains only a ``sitecustomize``, which runs the next ``sitecustomize`` too, and ``linkwright_pytest``, which
-    pytest loads.
+    The folder contains only ``linkwright_pytest``, which pytest loads, and a ``sitecustomize``, which also runs the
+    next ``sitecustomize`` on the path.
     """
     return str(_STARTUP)
 
@@ -30,13 +33,14 @@ def environment(base: Mapping[str, str] | None = None) -> dict[str, str]:
     """Return the environment in which a process and its children can import the stand-ins.
 
     Args:
-        base: the base environment; the environment of this process if omitted.
+        base: the environment to extend; None for the environment of this process.
 
     Returns:
-        A copy in which `standin_path` is first on ``PYTHONPATH``. ``LINKWRIGHT_SITE`` names the folders of the packages
-        that the stand-ins need, for interpreters that do not have them. Applying this function to its result changes
-        nothing. Source folders of a package that has a stand-in, such as a clone of rclpy in the workspace, are left
-        out unless the user put them there: they are not built, and would hide the stand-in.
+        A copy with `standin_path` first on ``PYTHONPATH``. ``LINKWRIGHT_SITE`` names the folders of the packages that
+        the stand-ins need, for interpreters that do not have these packages. Applying this function to its
+        result changes nothing. Source folders of a package that has a stand-in, such as a clone of rclpy in the
+        workspace, are removed
+        unless the user added them: they are not built, and would hide the stand-in.
     """
     result = dict(os.environ if base is None else base)
     _leave_out_hiding_sources(result)
@@ -50,12 +54,12 @@ def python_command(arguments: Sequence[str], base: Mapping[str, str] | None = No
 
     Args:
         arguments: the arguments of the interpreter: a file, or ``-m`` and a module, and the program's arguments.
-        base: the environment of the program; the environment of this process if omitted.
+        base: the environment of the program; None for the environment of this process.
 
     Returns:
-        The interpreter, followed by the arguments. It is the interpreter of the active virtual environment if its
-        version is that of ours, otherwise ours: the compiled libraries that the stand-ins need are built for one
-        version.
+        The interpreter, followed by the arguments. The interpreter of the active virtual environment is used if it has
+        the same Python version as ours, because the stand-ins need compiled libraries that are built for one version.
+        Otherwise our interpreter is used.
     """
     variables = os.environ if base is None else base
     return [_interpreter(variables), *arguments]

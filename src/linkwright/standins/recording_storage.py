@@ -1,4 +1,4 @@
-"""The data classes of ``rosbag2_py`` for recordings: options, filters, and ``metadata.yaml``."""
+"""The data classes of ``rosbag2_py``: options, filters and the metadata of recordings."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from linkwright.graph.time.values import ClockType, Duration, Time
 
 @dataclass(slots=True)
 class StorageOptions:
-    """The location and format of a recording, and how it is split into files."""
+    """The location and the storage format of a recording, and how to split it into files."""
 
     uri: str
     storage_id: str = ""
@@ -35,7 +35,7 @@ class StorageOptions:
 
 @dataclass(slots=True)
 class ConverterOptions:
-    """The serialization formats of messages; CDR is the only one."""
+    """The serialization formats of messages; only CDR is supported."""
 
     input_serialization_format: str = ""
     output_serialization_format: str = ""
@@ -43,7 +43,7 @@ class ConverterOptions:
 
 @dataclass(slots=True)
 class StorageFilter:
-    """A filter of topics: those named and those that match a regular expression, or all topics by default."""
+    """A filter that selects topics by name and by regular expression, or all topics by default."""
 
     topics: list[str] = field(default_factory=list)
     topics_regex: str = ""
@@ -82,7 +82,7 @@ class ReadOrder:
 
 @dataclass(slots=True)
 class MessageDefinition:
-    """The definition of a type in a recording, with its nested types."""
+    """The definition of a message type in a recording, including its nested types."""
 
     topic_type: str
     encoding: str
@@ -94,7 +94,8 @@ class MessageDefinition:
 class TopicMetadata:
     """The metadata of a topic in a recording.
 
-    Humble has no ``id``, and has one text instead of a list of profiles, so pass everything except the name by keyword.
+    Pass all arguments except the name by keyword: in Humble there is no ``id``, and the QoS profiles are one string
+    instead of a list.
     """
 
     id: int = 0
@@ -161,7 +162,7 @@ class BagMetadata:
     ros_distro: str = ""
 
     def __repr__(self) -> str:
-        """Return the metadata as ``ros2 bag info`` prints them."""
+        """Return the metadata in the format of ``ros2 bag info``."""
         start = self.starting_time.nanoseconds
         topics = [
             BagTopic(
@@ -206,16 +207,16 @@ class MetadataIo:
         write_information(Path(uri), _information(metadata))
 
     def serialize_metadata(self, metadata: BagMetadata) -> str:
-        """Return the text of ``metadata.yaml``, without its root key."""
+        """Return the contents of a ``metadata.yaml`` without the root key."""
         import yaml
 
         return yaml.safe_dump(_information(metadata), sort_keys=False, allow_unicode=True)
 
     def deserialize_metadata(self, serialized_metadata: str) -> BagMetadata:
-        """Parse text from `serialize_metadata`.
+        """Parse the output of `serialize_metadata`.
 
         Raises:
-            RuntimeError: the structure of the text is invalid.
+            RuntimeError: the structure of the YAML is invalid.
         """
         import yaml
 
@@ -226,22 +227,22 @@ class MetadataIo:
 
 
 def get_default_storage_id() -> str:
-    """Return the default storage format of new recordings."""
+    """Return the name of the storage format that new recordings have by default."""
     return STORAGES[0]
 
 
 def to_rclcpp_qos_vector(serialized: str, version: int) -> list[QoSProfile]:  # noqa: ARG001 - rosbag2's signature
-    """Parse the QoS profiles in the text of a ``metadata.yaml`` of any version."""
+    """Parse the QoS profiles of a topic in a ``metadata.yaml`` of any version."""
     return from_text(serialized)
 
 
 def convert_rclcpp_qos_to_rclpy_qos(qos_input: QoSProfile) -> QoSProfile:
-    """Return the profile unchanged, because it is already a profile of rclpy."""
+    """Return the profile unchanged, because the profiles of recordings are already rclpy profiles."""
     return qos_input
 
 
 def _metadata(found: Mapping[str, Any]) -> BagMetadata:
-    """Return the metadata in a parsed ``metadata.yaml``; older versions lack some keys."""
+    """Return the metadata for a parsed ``metadata.yaml``, with defaults for keys that old versions lack."""
     topics = []
     for entry in found["topics_with_message_count"]:
         known = dict(entry["topic_metadata"])

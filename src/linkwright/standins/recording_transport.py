@@ -1,4 +1,4 @@
-"""Record, play and rewrite recordings from programs: ``rosbag2_py`` (``Recorder``, ``Player`` ...)."""
+"""The classes of ``rosbag2_py`` that record, play and rewrite recordings, such as ``Recorder``."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _LOOK_SECONDS = 0.1
 
 
 class ServiceRequestsSource(enum.Enum):
-    """The source of the service requests that playback sends: introspection events of the service or of the client."""
+    """The introspection events from which playback takes service requests: service or client events."""
 
     SERVICE_INTROSPECTION = 0
     CLIENT_INTROSPECTION = 1
@@ -40,7 +40,7 @@ class ServiceRequestsSource(enum.Enum):
 
 @dataclass(slots=True)
 class PlayOptions:
-    """The options of playback; options that only tune rosbag2 are accepted and ignored."""
+    """The options of playback; options that only affect rosbag2's performance are ignored."""
 
     read_ahead_queue_size: int = 1000
     node_prefix: str = ""
@@ -71,7 +71,7 @@ class PlayOptions:
 
 @dataclass(slots=True)
 class RecordOptions:
-    """The options of recording; options that only tune rosbag2 are accepted and ignored."""
+    """The options of recording; options that only affect rosbag2's performance are ignored."""
 
     all_topics: bool = False
     all_services: bool = False
@@ -106,7 +106,7 @@ class RecordOptions:
 
     @property
     def selection(self) -> TopicSelection:
-        """The selection of topics; services are selected by their event topics, as in ``ros2bag``."""
+        """The selection of topics; as in ``ros2bag``, a service is selected by its event topic."""
         return TopicSelection(
             everything=self.all_topics or self.all,
             names=_absolute(self.topics),
@@ -123,7 +123,7 @@ class RecordOptions:
 
 
 class _Transport:
-    """A recorder or player: a node in a separate context, which runs until it is done or cancelled."""
+    """The base class of recorders and players, which run a node in a context of their own."""
 
     _cancelled: ClassVar[threading.Event]
 
@@ -131,7 +131,7 @@ class _Transport:
         cls._cancelled = threading.Event()
 
     def __init__(self, log_level: str = "info") -> None:
-        """Prepare a run with the given log level.
+        """Prepare a run with a log level.
 
         Raises:
             RuntimeError: there is no such level.
@@ -143,12 +143,15 @@ class _Transport:
 
     @classmethod
     def cancel(cls) -> None:
-        """End the run; may be called from any thread."""
+        """Cancel the current run; may be called from any thread."""
         cls._cancelled.set()
 
     @contextmanager
     def _running(self, name: str, *arguments: str) -> Iterator[tuple[Node, Callable[[Callable[[], bool]], None]]]:
-        """Yield a node and a function that runs its callbacks until a condition holds or the run is cancelled.
+        """Create a node for the duration of the context.
+
+        Yields:
+            The node, and a function that runs the node's callbacks until a condition is true or the run is cancelled.
 
         Raises:
             RuntimeError: a recording cannot be opened or created.
@@ -169,11 +172,11 @@ class _Transport:
             raise RuntimeError(str(error)) from error
         finally:
             context.try_shutdown()
-            self._cancelled.clear()  # not cleared at the start: the run may be cancelled before its thread starts
+            self._cancelled.clear()  # not at the start, since another thread may cancel before the run begins
 
 
 class Recorder(_Transport):
-    """Records topics until it is cancelled."""
+    """Records topics until `cancel` is called."""
 
     def record(
         self, storage_options: StorageOptions, record_options: RecordOptions, node_name: str = "rosbag2_recorder"
@@ -208,7 +211,7 @@ class Player(_Transport):
     """Plays recordings."""
 
     def play(self, storage_options: StorageOptions, play_options: PlayOptions) -> None:
-        """Play to the end, or until it is cancelled.
+        """Play a recording until it ends or `cancel` is called.
 
         Raises:
             RuntimeError: there is no such recording or topic, or the recording is damaged.
@@ -216,7 +219,7 @@ class Player(_Transport):
         self._play(storage_options, play_options, None)
 
     def burst(self, storage_options: StorageOptions, play_options: PlayOptions, num_messages: int) -> None:
-        """Publish the first messages as fast as possible, then stay paused until cancelled.
+        """Publish the first messages as fast as possible, then pause until `cancel` is called.
 
         Raises:
             RuntimeError: see `play`.
@@ -243,10 +246,10 @@ class Reindexer:
     """Rebuilds the metadata of recordings."""
 
     def reindex(self, storage_options: StorageOptions) -> None:
-        """Write the ``metadata.yaml`` of a recording.
+        """Rebuild the ``metadata.yaml`` of a recording from its files.
 
         Raises:
-            RuntimeError: the folder has no files of a recording, or they are damaged.
+            RuntimeError: the folder contains no files of a recording, or damaged ones.
         """
         try:
             reindex(Path(storage_options.uri))
@@ -255,7 +258,7 @@ class Reindexer:
 
 
 def bag_rewrite(input_options: Sequence[StorageOptions], output_config_file: str) -> None:
-    """Rewrite recordings according to a YAML file with the key ``output_bags``.
+    """Rewrite recordings as a YAML file with the key ``output_bags`` requests.
 
     Raises:
         RuntimeError: a recording cannot be read or created, or the structure of the file is invalid.
@@ -289,9 +292,9 @@ def _how_to_play(options: PlayOptions, *, paused: bool) -> _HowToPlay:
 
 
 def _remapping(rule: str) -> list[str]:
-    """Return the arguments for one remapping option.
+    """Convert a remapping option to command-line arguments.
 
-    ``--ros-args`` and ``--remap``, which rosbag2 accepts too, are dropped.
+    ``--ros-args`` and ``--remap``, which rosbag2 also accepts in the option, are dropped.
     """
     return [] if rule.startswith("-") else ["--remap", rule]
 

@@ -1,4 +1,4 @@
-"""Readers and writers of recordings (the API of ``rosbag2_py``, of Humble to Kilted)."""
+"""Readers and writers of recordings (the API of ``rosbag2_py`` from Humble to Kilted)."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _STEP_NS = NANOSECONDS_PER_SECOND
 
 
 class CompressionMode(enum.Enum):
-    """The unit of compression: a file or a message."""
+    """The unit that is compressed: none, a file or a message."""
 
     NONE = 0
     FILE = 1
@@ -44,7 +44,7 @@ class CompressionMode(enum.Enum):
 
 @dataclass
 class CompressionOptions:
-    """The compression options; zstd is the only format, and tuning options are ignored."""
+    """The compression options; only zstd is supported, and performance options are ignored."""
 
     compression_format: str = ""
     compression_mode: CompressionMode = CompressionMode.NONE
@@ -54,7 +54,7 @@ class CompressionOptions:
 
 
 def compression_mode_from_string(name: str) -> CompressionMode:
-    """Return the mode with the given name, ignoring case; NONE for an unknown name."""
+    """Return the mode with a name, ignoring case, or NONE if there is no such mode."""
     return CompressionMode.__members__.get(name.upper(), CompressionMode.NONE)
 
 
@@ -89,7 +89,7 @@ class SequentialReader:
         self.seek(None)
 
     def open_uri(self, uri: str) -> None:
-        """Open a recording by its path, with default options."""
+        """Open a recording, given its path, with default options."""
         self.open(StorageOptions(uri))
 
     def close(self) -> None:
@@ -101,7 +101,9 @@ class SequentialReader:
         return self._next is not None
 
     def read_next(self) -> tuple[str, bytes, int]:
-        """Return the next message: topic, CDR bytes, and time of reception in nanoseconds since the epoch.
+        """Return the topic, the CDR bytes and the time of reception of the next message.
+
+        The time is in nanoseconds since the epoch.
 
         Raises:
             RuntimeError: there is no further message.
@@ -113,11 +115,11 @@ class SequentialReader:
         return topic, data, stamp_ns
 
     def get_all_topics_and_types(self) -> list[TopicMetadata]:
-        """Return the topics of the recording, regardless of filters."""
+        """Return the topics of the recording, including topics that the filter excludes."""
         return [topic_information.topic_metadata for topic_information in self.get_metadata().topics_with_message_count]
 
     def get_all_message_definitions(self) -> list[MessageDefinition]:
-        """Return the definitions of its topics' types that the recording contains."""
+        """Return the type definitions that the recording contains for its topics."""
         return [MessageDefinition(*definition) for definition in self._opened().definitions]
 
     def get_metadata(self) -> BagMetadata:
@@ -154,7 +156,7 @@ class SequentialReader:
         )
 
     def set_filter(self, storage_filter: StorageFilter) -> None:
-        """Restrict further reading to the topics of a filter."""
+        """Restrict further reading to the topics that a filter includes."""
         self._filter = storage_filter
         self._continue()
 
@@ -163,7 +165,10 @@ class SequentialReader:
         self.set_filter(StorageFilter())
 
     def set_read_order(self, read_order: ReadOrder) -> bool:
-        """Set whether further reading goes forwards or backwards; return whether that is possible.
+        """Set whether further reading goes forwards or backwards.
+
+        Returns:
+            Whether the order is supported.
 
         Raises:
             RuntimeError: the order is not by the time of reception.
@@ -175,10 +180,10 @@ class SequentialReader:
         return True
 
     def seek(self, timestamp: int | None) -> None:
-        """Continue at a time, in nanoseconds since the epoch.
+        """Set the position to a time in nanoseconds since the epoch.
 
-        The next message is the first one at or after this time, or, when reading backwards, the last one at or before
-        it.
+        The next message is the first one at or after this time. When reading backwards, it is the last one at or before
+        this time.
         """
         self._start_ns, self._last = timestamp, None
         self._continue()
@@ -189,7 +194,7 @@ class SequentialReader:
         return self._bag
 
     def _continue(self) -> None:
-        """Open the stream of messages that continues after the last message read."""
+        """Open the stream of messages behind the last message that was read."""
         bag = self._opened()
         topics = [topic.name for topic in bag.topics if self._filter.admits(topic.name)]
         if not topics:
@@ -219,7 +224,10 @@ class SequentialReader:
 
 
 def _backwards(bag: BagReader, topics: Collection[str], last_ns: int | None) -> Iterator[_Message]:
-    """Yield the messages of topics backwards, from the end or from the last message at or before a time."""
+    """Yield the messages of topics in reverse order, from the last one at or before `last_ns`.
+
+    If `last_ns` is None, begin at the end of the recording.
+    """
     stop_ns, step_ns = (bag.end_ns if last_ns is None else min(last_ns, bag.end_ns)) + 1, _STEP_NS
     while stop_ns > bag.start_ns:
         found = list(bag.messages(topics, stop_ns - step_ns, stop_ns))
@@ -229,7 +237,7 @@ def _backwards(bag: BagReader, topics: Collection[str], last_ns: int | None) -> 
 
 
 def _files(bag: BagReader) -> list[FileInformation]:
-    """Return the file entries in the ``metadata.yaml`` of a recording; empty if that is missing."""
+    """Return the files that the ``metadata.yaml`` of a recording lists, or an empty list without one."""
     metadata = MetadataIo()
     where = str(bag.path)
     return metadata.read_metadata(where).files if metadata.metadata_file_exists(where) else []
@@ -240,7 +248,7 @@ def _time(stamp_ns: int) -> Time:
 
 
 class SequentialWriter:
-    """Writes messages; the recording is complete once the writer is closed or garbage collected."""
+    """Writes messages; the recording is complete after the writer is closed or garbage collected."""
 
     def __init__(self) -> None:
         self._bag: BagWriter | None = None
@@ -262,10 +270,10 @@ class SequentialWriter:
         self._opened().close()
 
     def create_topic(self, topic_with_type: TopicMetadata) -> None:
-        """Add a topic, so that its messages can be written.
+        """Add a topic, so that messages of the topic can be written.
 
         Raises:
-            RuntimeError: no package has its type.
+            RuntimeError: no package defines the topic's type.
         """
         profiles = topic_with_type.offered_qos_profiles
         try:
@@ -279,10 +287,10 @@ class SequentialWriter:
         """Write a message.
 
         Args:
-            topic_name: an existing topic.
-            message: CDR bytes with their header, from ``serialize_message``.
+            topic_name: a topic from `create_topic`.
+            message: CDR bytes including the encapsulation header, from ``serialize_message``.
             timestamp: the time of reception, in nanoseconds since the epoch.
-            send_timestamp: the time of publication; not recorded.
+            send_timestamp: the time of publication, which is not recorded.
 
         Raises:
             RuntimeError: there is no such topic.
@@ -293,7 +301,10 @@ class SequentialWriter:
         bag.write(topic_name, timestamp, message)
 
     def take_snapshot(self) -> bool:
-        """Write the latest messages, which ``snapshot_mode`` buffers; return whether that mode is on.
+        """Write the buffered messages to the recording.
+
+        Returns:
+            Whether ``snapshot_mode`` is on; otherwise messages are not buffered.
 
         Raises:
             RuntimeError: the file cannot be written.
@@ -324,7 +335,10 @@ class SequentialWriter:
 
 
 class SequentialCompressionWriter(SequentialWriter):
-    """A `SequentialWriter` for compressed recordings; without options, it uses the storage format's own compression."""
+    """A `SequentialWriter` for compressed recordings.
+
+    Without options, the compression of the storage format is used.
+    """
 
     def __init__(self, compression_options: CompressionOptions | None = None) -> None:
         super().__init__()
@@ -337,7 +351,7 @@ class SequentialCompressionWriter(SequentialWriter):
 
 
 class Info:
-    """Provides information on recordings."""
+    """Reads the metadata of recordings."""
 
     def read_metadata(self, uri: str, storage_id: str = "") -> BagMetadata:
         """Return the metadata of a recording.
@@ -354,10 +368,10 @@ class Info:
 
 
 class LocalMessageDefinitionSource:
-    """Provides the definitions of known types."""
+    """Provides the definitions of message types."""
 
     def get_full_text(self, root_topic_type: str) -> MessageDefinition:
-        """Return the definition of a type; an empty definition if the type is not known."""
+        """Return the definition of a type, which is empty for an unknown type."""
         try:
             return MessageDefinition(root_topic_type, "ros2msg", schema_of(root_topic_type), type_hash(root_topic_type))
         except LinkwrightError:
@@ -375,7 +389,7 @@ def get_registered_compressors() -> set[str]:
 
 
 def get_registered_serializers() -> set[str]:
-    """Return the message converters: an empty set, because CDR is the only format."""
+    """Return an empty set, because no converters are needed for CDR, the only format."""
     return set()
 
 
@@ -385,7 +399,7 @@ def get_registered_writers() -> set[str]:
 
 
 def writer_for(options: StorageOptions, compression: str) -> BagWriter:
-    """Create a writer from storage options.
+    """Create the writer of a recording from storage options.
 
     Raises:
         RuntimeError: there is no such storage, or the cache size for snapshots is not positive.

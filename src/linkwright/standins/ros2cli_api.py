@@ -29,7 +29,7 @@ def get_package_names() -> KeysView[str]:
 
 
 def get_prefix_path(package_name: str) -> str | None:
-    """Return the install prefix of a package, or None."""
+    """Return the install prefix of a package, or None if there is no such package."""
     try:
         return get_package_prefix(package_name)
     except PackageNotFoundError:
@@ -37,7 +37,7 @@ def get_prefix_path(package_name: str) -> str | None:
 
 
 def get_executable_paths(*, package_name: str) -> list[str]:
-    """Return the paths of the programs below ``lib`` in a package's prefix.
+    """Return the paths of a package's executables, which are below ``lib`` in its prefix.
 
     Raises:
         PackageNotFound: there is no such package.
@@ -65,7 +65,9 @@ def get_topic_names(*, node: Any, include_hidden_topics: bool = False) -> list[s
 
 
 def get_msg_class(node: Any, topic: str, blocking: bool = False, include_hidden_topics: bool = False) -> Any:
-    """Return the message class of a topic; if the topic has no publisher, wait for one or return None.
+    """Return the message class of a topic.
+
+    If the topic does not have a type yet, wait for one if `blocking` is set, or else return None.
 
     Raises:
         RuntimeError: the name is invalid, or the topic has several types.
@@ -99,14 +101,19 @@ def unsigned_int(string: str) -> int:
     """Parse a non-negative integer from the command line.
 
     Raises:
-        ArgumentTypeError: it is negative.
-        ValueError: it is not a number.
+        ArgumentTypeError: the number is negative.
+        ValueError: the string is not an integer.
     """
     return _at_least(0, string, "value must be non-negative integer")
 
 
 def positive_int(string: str) -> int:
-    """Parse a positive integer from the command line; raises the same errors as `unsigned_int`."""
+    """Parse a positive integer from the command line.
+
+    Raises:
+        ArgumentTypeError: the number is not positive.
+        ValueError: the string is not an integer.
+    """
     return _at_least(1, string, "value must be a positive integer")
 
 

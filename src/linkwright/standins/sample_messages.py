@@ -18,9 +18,9 @@ _KINDS = 3
 
 
 def samples(name: str) -> list[Message]:
-    """Return sample messages of a type of ``test_msgs``: with default values, small values and extreme values.
+    """Return sample messages of a type of ``test_msgs``, with default, small and extreme values.
 
-    A type without fields has only the first of these.
+    A type without fields has only one sample, the default.
 
     Args:
         name: the name of the type, such as ``BasicTypes``.
@@ -58,7 +58,11 @@ def _value(type_name: str, kind: int) -> Any:
 
 
 def get_test_msg(message_name: str) -> list[Message]:
-    """Return the samples of a type; ValueError if there is no such type."""
+    """Return the sample messages of a type.
+
+    Raises:
+        ValueError: there is no such type.
+    """
     if message_name not in _FIXTURES:
         raise ValueError(f"test_msgs has no samples of '{message_name}'; it has them of {', '.join(_FIXTURES)}")
     return samples(message_name)

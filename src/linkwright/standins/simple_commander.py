@@ -1,4 +1,4 @@
-"""Send goals to nav2 without callbacks (the API of ``nav2_simple_commander.robot_navigator``)."""
+"""Sends goals to nav2 without callbacks (the API of ``nav2_simple_commander.robot_navigator``)."""
 
 from __future__ import annotations
 
@@ -49,13 +49,13 @@ _ACTIONS = {
 
 
 class BasicNavigator(Node):
-    """Sends tasks to nav2; each starts immediately, and `isTaskComplete` returns whether it has ended.
+    """Sends tasks to nav2; a task runs in the background until `isTaskComplete` returns True.
 
     Attributes:
-        initial_pose: the given initial pose of the robot.
-        initial_pose_received: whether the localization has responded.
+        initial_pose: the initial pose of the robot, as set by the user.
+        initial_pose_received: whether the localization has responded to the initial pose.
         feedback: the latest feedback of the task.
-        status: the status of the task (action_msgs/GoalStatus); None before it has ended.
+        status: the final status of the task (action_msgs/GoalStatus); None while it runs.
         goal_handle: the goal handle of the task.
         result_future: the future of the task's result.
     """
@@ -91,11 +91,11 @@ class BasicNavigator(Node):
         return self._begin("navigate_to_pose", pose=pose, behavior_tree=behavior_tree)
 
     def goThroughPoses(self, poses: Any, behavior_tree: str = "") -> bool:
-        """Navigate through poses to the last one; return whether the goal was accepted."""
+        """Navigate through all poses in order; return whether the goal was accepted."""
         return self._begin("navigate_through_poses", poses=list(poses), behavior_tree=behavior_tree)
 
     def followWaypoints(self, poses: Any) -> bool:
-        """Navigate to each pose and execute the waypoint tasks there; return whether the goal was accepted."""
+        """Navigate to each pose and run the waypoint task there; return whether the goal was accepted."""
         return self._begin("follow_waypoints", poses=list(poses))
 
     def followPath(self, path: Any, controller_id: str = "", goal_checker_id: str = "") -> bool:
@@ -103,15 +103,15 @@ class BasicNavigator(Node):
         return self._begin("follow_path", path=path, controller_id=controller_id, goal_checker_id=goal_checker_id)
 
     def spin(self, spin_dist: float = 1.57, time_allowance: float = 10) -> bool:
-        """Turn in place by an angle (radians); return whether the goal was accepted."""
+        """Rotate in place by an angle in radians; return whether the goal was accepted."""
         return self._begin("spin", target_yaw=float(spin_dist), time_allowance=_duration(time_allowance))
 
     def backup(self, backup_dist: float = 0.15, backup_speed: float = 0.025, time_allowance: float = 10) -> bool:
-        """Drive straight back (metres, m/s); return whether the goal was accepted."""
+        """Drive straight back, in m and m/s; return whether the goal was accepted."""
         return self._straight("backup", backup_dist, backup_speed, time_allowance)
 
     def driveOnHeading(self, dist: float = 0.15, speed: float = 0.025, time_allowance: float = 10) -> bool:
-        """Drive straight ahead (metres, m/s); return whether the goal was accepted."""
+        """Drive straight ahead, in m and m/s; return whether the goal was accepted."""
         return self._straight("drive_on_heading", dist, speed, time_allowance)
 
     def assistedTeleop(self, time_allowance: float = 30) -> bool:
@@ -119,13 +119,17 @@ class BasicNavigator(Node):
         return self._begin("assisted_teleop", time_allowance=_duration(time_allowance))
 
     def cancelTask(self) -> None:
-        """Cancel the task."""
+        """Cancel the current task, if any."""
         self.info("Canceling current task.")
         if self.result_future is not None:
             spin_until_future_complete(self, self.goal_handle.cancel_goal_async())
 
     def isTaskComplete(self) -> bool:
-        """Wait up to a tenth of a second; return whether the task has ended, or there is no task."""
+        """Wait at most 0.1 s for the current task to end.
+
+        Returns:
+            Whether the task has ended; also True if there is no task.
+        """
         if self.result_future is None:
             return True
         spin_until_future_complete(self, self.result_future, timeout_sec=_STEP)
@@ -138,7 +142,7 @@ class BasicNavigator(Node):
         return True
 
     def getFeedback(self) -> Any:
-        """Return the latest feedback of the task, or None."""
+        """Return the latest feedback of the task, or None if none has arrived."""
         return self.feedback
 
     def getResult(self) -> TaskResult:
@@ -159,33 +163,37 @@ class BasicNavigator(Node):
     # --- plans --------------------------------------------------------------------------------------------------------
 
     def getPath(self, start: Any, goal: Any, planner_id: str = "", use_start: bool = False) -> Any:
-        """Plan a path to a pose; return it (nav_msgs/Path), or None if planning failed."""
+        """Plan a path to a pose.
+
+        Returns:
+            The path (nav_msgs/Path), or None if planning failed.
+        """
         request = {"start": start, "goal": goal, "planner_id": planner_id, "use_start": use_start}
         return getattr(self._done("compute_path_to_pose", **request), "path", None)
 
     def getPathThroughPoses(self, start: Any, goals: Any, planner_id: str = "", use_start: bool = False) -> Any:
-        """Plan a path through poses; see `getPath`."""
+        """Plan a path through several poses; see `getPath`."""
         request = {"start": start, "goals": list(goals), "planner_id": planner_id, "use_start": use_start}
         return getattr(self._done("compute_path_through_poses", **request), "path", None)
 
     def smoothPath(
         self, path: Any, smoother_id: str = "", max_duration: float = 2.0, check_for_collision: bool = False
     ) -> Any:
-        """Return a smoothed path, or None if smoothing failed."""
+        """Return a smoothed path (nav_msgs/Path), or None if smoothing failed."""
         request = {"path": path, "smoother_id": smoother_id, "max_smoothing_duration": _duration(max_duration)}
         return getattr(self._done("smooth_path", **request, check_for_collisions=check_for_collision), "path", None)
 
     # --- maps and costmaps --------------------------------------------------------------------------------------------
 
     def changeMap(self, map_filepath: str) -> bool:
-        """Load another map; return whether it was loaded."""
+        """Load another map; return whether the map was loaded."""
         answer = self._call("nav2_msgs/srv/LoadMap", "map_server/load_map", map_url=map_filepath)
         if answer.result != answer.RESULT_SUCCESS:
             self.error("Change map request failed!")
         return bool(answer.result == answer.RESULT_SUCCESS)
 
     def clearAllCostmaps(self) -> None:
-        """Clear all costmaps."""
+        """Clear the local and the global costmap."""
         self.clearLocalCostmap()
         self.clearGlobalCostmap()
 
@@ -222,7 +230,7 @@ class BasicNavigator(Node):
         return self._begin(name, target=target, speed=float(speed), time_allowance=_duration(time_allowance))
 
     def _begin(self, name: str, **goal: Any) -> bool:
-        """Send a goal; return whether it was accepted."""
+        """Send the goal of a task without waiting for its result; return whether it was accepted."""
         self.feedback, self.status, self.result_future = None, None, None
         self.goal_handle = self._sent(name, goal, self._feedbackCallback)
         if not self.goal_handle.accepted:
@@ -232,7 +240,7 @@ class BasicNavigator(Node):
         return True
 
     def _done(self, name: str, **goal: Any) -> Any:
-        """Send a goal and wait; return its result, or None if it did not succeed."""
+        """Send a goal and wait for its result; return None unless the goal succeeded."""
         handle = self._sent(name, goal, None)
         if not handle.accepted:
             self.error(f"{name} was rejected!")

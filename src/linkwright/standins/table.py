@@ -1,4 +1,4 @@
-"""The tables of the public names in ROS modules and where we implement each of them.
+"""The tables of the public names in ROS modules, with the place where each name is implemented.
 
 A table is a text file ``tables/<package>.txt``, in the order of the package's modules::
 
@@ -16,13 +16,13 @@ A table is a text file ``tables/<package>.txt``, in the order of the package's m
     setup: linkwright.some.module.function
     others: linkwright.some.module.function_of_a_name
 
-A line ``origin: names`` means that ``origin`` defines these names; in ``ours=theirs``, the name in the origin is on the
-right. The origin may be another stand-in module. ``import`` lists modules; a submodule of the package takes precedence.
-``since`` gives the distribution for names that ROS 2 Humble lacks. Names with a leading underscore, and submodules that
-no line names, are importable but not in ``__all__``. ``setup`` is called after the module is created; ``others``
-returns names that are not in the table.
+A line ``origin: names`` means that the module ``origin`` defines these names. In ``ours=theirs``, the name in the
+origin is on the right. The origin can be another stand-in module. ``import`` lists modules; a submodule of the package
+takes precedence. ``since`` gives the distribution for names that ROS 2 Humble lacks. Names with a leading underscore,
+and submodules that no line names, are importable but not in ``__all__``. The function ``setup`` is called after the
+module is created. The function ``others`` returns the values of names that are not in the table.
 
-Programs wait while a table is read, so it is read without a parsing library, and only when its package is imported.
+A table is read without a parsing library and only when its package is imported, because programs wait for it.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ class Name:
 
 @dataclass(frozen=True, slots=True)
 class Remark:
-    """The reason why a name is missing or how it differs from the real one, in English and in Chinese."""
+    """The reason why a name is missing, or the difference from the real one, in English and Chinese."""
 
     english: str
     chinese: str
@@ -59,13 +59,13 @@ class Module:
 
     Attributes:
         name: the full name of the module.
-        since: the distribution of ROS 2 that introduced it, if after Humble.
-        names: the names that can be imported from it.
-        absent: public names of the real module that ours does not have.
-        differs: names of ours that differ from the real ones.
+        since: the ROS 2 distribution that introduced the module, if later than Humble.
+        names: the names that can be imported from the module.
+        absent: public names of the real module that our module does not have.
+        differs: names of our module that differ from the real ones.
         setup: the full name of a function to call after the module is created.
-        others: the full name of a function that returns any other name, or raises AttributeError.
-        submodules: the last parts of its submodules' names.
+        others: the full name of a function that returns the value of any other name, or raises AttributeError.
+        submodules: the names of the submodules, without the name of the module.
     """
 
     name: str
@@ -90,7 +90,7 @@ def packages() -> list[str]:
 
 @cache
 def read(package: str) -> dict[str, Module]:
-    """Return the modules of a package, as full name -> module; empty for a package without a table."""
+    """Return the modules of a package by full name; empty for a package without a table."""
     try:
         text = (FOLDER / f"{package}.txt").read_text(encoding="utf-8")
     except OSError:
@@ -104,7 +104,7 @@ def find(module: str) -> Module | None:
 
 
 def modules_providing(name: str) -> list[str]:
-    """Return the modules from which a name can be imported, one for each package, such as rclpy.node for Node."""
+    """Return the modules that provide a name, one per package, such as ``rclpy.node`` for ``Node``."""
     found: dict[str, str] = {}
     for package in packages():
         having = [
@@ -113,7 +113,7 @@ def modules_providing(name: str) -> list[str]:
             if name in module.names and module.names[name].origin.startswith("linkwright.") and "._" not in module.name
         ]
         having = [module for module in having if module.rpartition(".")[0] not in having]
-        if having:  # of several modules, prefer one whose name is part of the imported name
+        if having:  # of several modules in a package, prefer one whose name is part of the imported name
             last = {module: module.rpartition(".")[2].replace("_", "") for module in having}
             found[package] = min(having, key=lambda module: (last[module] not in name.lower(), len(module)))
     return sorted(found.values())
@@ -157,7 +157,7 @@ def parse(text: str) -> dict[str, Module]:
 
 
 def _joined(text: str) -> list[str]:
-    """Return the lines of a table, with continuation lines joined."""
+    """Return the lines of a table, with continuation lines appended to the line that they continue."""
     lines: list[str] = []
     for line in text.splitlines():
         if line[:1] in ("", "#"):

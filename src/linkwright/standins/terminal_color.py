@@ -1,4 +1,4 @@
-"""Terminal colours for markup in texts, such as ``@{redf}`` (``osrf_pycommon.terminal_color``)."""
+"""Replaces markup such as ``@{redf}`` by terminal colours (``osrf_pycommon.terminal_color``)."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _ANSI = _codes()
 
 
 class _Switch:
-    """Whether markup is replaced by colours or by nothing."""
+    """The setting whether markup is replaced by escape sequences or removed."""
 
     is_on = True
 
@@ -44,10 +44,12 @@ class _Marked(Template):
 
 
 def ansi(key: str) -> str:
-    """Return the escape sequence for a name such as ``redf`` or ``reset``; empty while colours are disabled.
+    """Return the escape sequence of a style such as ``redf`` or ``reset``.
+
+    The result is empty while colours are disabled.
 
     Raises:
-        KeyError: there is no such name.
+        KeyError: there is no such style.
     """
     return get_ansi_dict()[key]
 
@@ -68,7 +70,7 @@ def disable_ansi_color_substitution_globally() -> None:
 
 
 def format_color(msg: str) -> str:
-    """Replace the markup in a text, including short forms such as ``@!``, and reset the colour at the end.
+    """Replace the markup in a string, including short forms such as ``@!``, and append a reset.
 
     Raises:
         KeyError: there is no such colour or style.
@@ -80,13 +82,13 @@ def format_color(msg: str) -> str:
 
 
 def print_color(*args: Any, **kwargs: Any) -> None:
-    """Print texts formatted by `format_color`; accepts the arguments of ``print``."""
+    """Print strings after replacing their markup; the arguments are those of ``print``."""
     end, separator = kwargs.pop("end", "\n"), kwargs.pop("sep", " ")
     print(format_color(separator.join(map(str, args))), end=end, **kwargs)
 
 
 def sanitize(msg: str) -> str:
-    """Escape a text so that `format_color` finds no markup in it."""
+    """Escape a string so that `format_color` returns the original string."""
     return (
         msg.replace("@", "@@")
         .replace("@@!", "@{atexclamation}")
@@ -97,10 +99,15 @@ def sanitize(msg: str) -> str:
 
 
 def remove_ansi_escape_sequences(string: str) -> str:
-    """Return a text without its escape sequences."""
+    """Return a string without its escape sequences."""
     return _ESCAPE_SEQUENCE.sub("", string)
 
 
 def split_by_ansi_escape_sequence(string: str, include_delimiters: bool = False) -> list[str]:
-    """Split a text at escape sequences, which are included in the result on request."""
+    """Split a string at escape sequences.
+
+    Args:
+        string: the string.
+        include_delimiters: whether the result contains the escape sequences.
+    """
     return re.split(f"({_ESCAPE_SEQUENCE.pattern})" if include_delimiters else _ESCAPE_SEQUENCE, string)

@@ -1,8 +1,8 @@
-"""Rotations and homogeneous matrices with the names and conventions of the Python package ``tf_transformations``.
+"""Rotations and homogeneous matrices with the names and conventions of ``tf_transformations``.
 
-Quaternions are x y z w. A matrix is an array of shape (4, 4) and multiplies column vectors. Euler angles, in radians,
-have an axes code: ``s`` for static or ``r`` for rotating axes, followed by the three axes in the order of rotation;
-``sxyz`` is ROS's roll, pitch and yaw.
+Quaternions are in the order x y z w. A matrix is an array of shape (4, 4) that multiplies column vectors. Euler angles
+are in radians. Their axes code is ``s`` for static or ``r`` for rotating axes, followed by the three axes in the order
+of rotation; ``sxyz`` means ROS's roll, pitch and yaw.
 """
 
 from __future__ import annotations
@@ -41,13 +41,19 @@ def translation_matrix(direction: ArrayLike) -> Matrix:
 
 
 def translation_from_matrix(matrix: ArrayLike) -> Vector:
-    """Return the translation part of a matrix, shape (3,)."""
+    """Return the translation part of a matrix, of shape (3,)."""
     translation: Vector = np.array(matrix, dtype=float)[:3, 3].copy()
     return translation
 
 
 def rotation_matrix(angle: float, direction: ArrayLike, point: ArrayLike | None = None) -> Matrix:
-    """Return the matrix of a rotation about an axis through a point, by default the origin."""
+    """Return the matrix of a rotation about an axis.
+
+    Args:
+        angle: the angle in radians.
+        direction: the direction of the axis.
+        point: a point on the axis; None for the origin.
+    """
     matrix = quaternion_matrix(quaternion_about_axis(angle, direction))
     if point is not None:
         fixed = np.asarray(point, dtype=float)[:3]
@@ -56,7 +62,9 @@ def rotation_matrix(angle: float, direction: ArrayLike, point: ArrayLike | None 
 
 
 def rotation_from_matrix(matrix: ArrayLike) -> tuple[float, Vector, Vector]:
-    """Return the angle and the axis of a rotation, and a (homogeneous) point on the axis.
+    """Return the angle in radians, the axis and a point on the axis of a rotation matrix.
+
+    The point is in homogeneous coordinates.
 
     Raises:
         ValueError: the matrix is not a rotation.
@@ -72,7 +80,13 @@ def rotation_from_matrix(matrix: ArrayLike) -> tuple[float, Vector, Vector]:
 
 
 def scale_matrix(factor: float, origin: ArrayLike | None = None, direction: ArrayLike | None = None) -> Matrix:
-    """Return the matrix that scales by a factor about a point, in all directions or in one direction."""
+    """Return the matrix of a scaling about a point.
+
+    Args:
+        factor: the scale factor.
+        origin: the fixed point; None for the origin.
+        direction: the direction to scale in; None for all directions.
+    """
     matrix = np.eye(4)
     if direction is None:
         matrix[:3, :3] *= factor
@@ -86,7 +100,7 @@ def scale_matrix(factor: float, origin: ArrayLike | None = None, direction: Arra
 
 
 def reflection_matrix(point: ArrayLike, normal: ArrayLike) -> Matrix:
-    """Return the matrix of the reflection across the plane with a given point and normal."""
+    """Return the matrix of the reflection in a plane, given a point on the plane and its normal."""
     return scale_matrix(-1.0, point, normal)
 
 
@@ -140,7 +154,7 @@ def quaternion_about_axis(angle: float, axis: ArrayLike) -> Vector:
 
 
 def quaternion_matrix(quaternion: ArrayLike) -> Matrix:
-    """Return the rotation matrix of a quaternion x y z w, which does not need to have unit length."""
+    """Return the rotation matrix of a quaternion x y z w, which need not have unit length."""
     x, y, z, w = (float(value) for value in np.asarray(quaternion, dtype=float)[:4])
     squared = x * x + y * y + z * z + w * w
     matrix = np.eye(4)
@@ -158,7 +172,7 @@ def quaternion_matrix(quaternion: ArrayLike) -> Matrix:
 def quaternion_from_matrix(matrix: ArrayLike) -> Vector:
     """Return the unit quaternion x y z w of a rotation matrix, with non-negative w.
 
-    For a matrix that is not exactly a rotation, it is the nearest rotation's quaternion.
+    For a matrix that is not exactly a rotation, return the quaternion of the nearest rotation.
     """
     m = np.asarray(matrix, dtype=float)[:3, :3]
     # The quaternion x y z w is the eigenvector of this matrix with the largest eigenvalue (Bar-Itzhack 2000).
@@ -176,7 +190,10 @@ def quaternion_from_matrix(matrix: ArrayLike) -> Vector:
 
 
 def quaternion_multiply(quaternion1: ArrayLike, quaternion0: ArrayLike) -> Vector:
-    """Return the product x y z w, which rotates by `quaternion0`, then by `quaternion1`, about static axes."""
+    """Return the product of two quaternions x y z w.
+
+    The product rotates by `quaternion0` first, then by `quaternion1`, about static axes.
+    """
     return arrays.quaternion_multiply(quaternion1, quaternion0)
 
 
@@ -194,12 +211,12 @@ def quaternion_inverse(quaternion: ArrayLike) -> Vector:
 def quaternion_slerp(
     quat0: ArrayLike, quat1: ArrayLike, fraction: float, spin: int = 0, shortestpath: bool = True
 ) -> Vector:
-    """Interpolate between two quaternions x y z w (slerp).
+    """Interpolate between two quaternions x y z w on the unit sphere (slerp).
 
     Args:
-        quat0: the start.
-        quat1: the end.
-        fraction: 0 at the start, 1 at the end.
+        quat0: the quaternion for fraction 0.
+        quat1: the quaternion for fraction 1.
+        fraction: the position between the two quaternions, from 0 to 1.
         spin: the number of additional half turns.
         shortestpath: whether to take the path with the smaller angle.
     """
@@ -218,7 +235,8 @@ def quaternion_slerp(
 def random_quaternion(rand: Sequence[float] | None = None) -> Vector:
     """Return a uniformly distributed random unit quaternion x y z w (Shoemake 1992).
 
-    It is computed from `rand`, three numbers between 0 and 1, if given.
+    Args:
+        rand: three random numbers between 0 and 1; None to draw them.
     """
     u, v, w = np.random.default_rng().random(3) if rand is None else rand
     outer, inner = math.sqrt(1.0 - u), math.sqrt(u)
@@ -229,12 +247,16 @@ def random_quaternion(rand: Sequence[float] | None = None) -> Vector:
 
 
 def random_rotation_matrix(rand: Sequence[float] | None = None) -> Matrix:
-    """Return a uniformly distributed random rotation matrix, computed from three numbers between 0 and 1 if given."""
+    """Return a uniformly distributed random rotation matrix.
+
+    Args:
+        rand: three random numbers between 0 and 1; None to draw them.
+    """
     return quaternion_matrix(random_quaternion(rand))
 
 
 def random_vector(size: int) -> Vector:
-    """Return a vector of random numbers between 0 and 1."""
+    """Return a vector of `size` random numbers between 0 and 1."""
     return np.random.default_rng().random(size)
 
 
@@ -245,7 +267,7 @@ def inverse_matrix(matrix: ArrayLike) -> Matrix:
 
 
 def concatenate_matrices(*matrices: ArrayLike) -> Matrix:
-    """Return the product of matrices, multiplied from left to right."""
+    """Return the product of matrices in the given order."""
     product = np.eye(4)
     for matrix in matrices:
         product = product @ np.asarray(matrix, dtype=float)
@@ -259,12 +281,12 @@ def is_same_transform(matrix0: ArrayLike, matrix1: ArrayLike) -> bool:
 
 
 def vector_norm(data: ArrayLike, axis: int | None = None) -> Any:
-    """Return the length of a vector, or of each vector along an axis."""
+    """Return the Euclidean length of a vector, or of each vector along an axis."""
     return np.linalg.norm(np.asarray(data, dtype=float), axis=axis)
 
 
 def unit_vector(data: ArrayLike, axis: int | None = None) -> Vector:
-    """Return the normalized vector, or the normalized vectors along an axis."""
+    """Return a vector scaled to unit length, or each vector along an axis."""
     vectors = np.array(data, dtype=float)
     lengths = np.linalg.norm(vectors, axis=axis, keepdims=axis is not None)
     unit: Vector = vectors / lengths
@@ -278,12 +300,14 @@ def compose_matrix(
     translate: ArrayLike | None = None,
     perspective: ArrayLike | None = None,
 ) -> Matrix:
-    """Return the matrix that scales, shears, rotates (Euler angles ``sxyz``), translates and projects, in this order.
+    """Return the matrix of a sequence of transforms.
+
+    The matrix scales, shears, rotates, translates and projects, in this order.
 
     Args:
         scale: the factors for x, y and z.
         shear: the factors for x-y, x-z and y-z.
-        angles: the Euler angles.
+        angles: the Euler angles (``sxyz``) in radians.
         translate: the translation vector.
         perspective: the last row of the matrix.
     """
@@ -321,7 +345,7 @@ def decompose_matrix(matrix: ArrayLike) -> tuple[Vector, list[float], list[float
         affine = m.copy()
         affine[3] = (0.0, 0.0, 0.0, 1.0)
         perspective = m[3] @ np.linalg.inv(affine)
-    # The rotation times an upper triangular matrix with a positive diagonal, unless the matrix mirrors.
+    # The rotation times an upper triangular matrix; the diagonal is positive unless the matrix contains a reflection.
     rotation, triangle = np.linalg.qr(m[:3, :3])
     signs = np.sign(np.diag(triangle))
     rotation, triangle = rotation * signs, triangle * signs[:, None]
@@ -333,7 +357,11 @@ def decompose_matrix(matrix: ArrayLike) -> tuple[Vector, list[float], list[float
 
 
 def _read_axes(axes: str) -> tuple[bool, tuple[int, int, int]]:
-    """Return whether the axes rotate, and the three axes in the order for static axes."""
+    """Parse an axes code.
+
+    Returns:
+        Whether the axes rotate, and the indices of the three axes in the order for static axes.
+    """
     if axes not in _AXES:
         raise ValueError(f"unknown axes '{axes}': write s or r and three axes, such as sxyz")
     a, b, c = ("xyz".index(letter) for letter in axes[1:])

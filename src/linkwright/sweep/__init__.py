@@ -1,4 +1,4 @@
-"""Sweeps: run a scenario over parameters and seeds, and collect the results in a table."""
+"""Sweeps, which run a scenario with several parameter values and seeds and tabulate the results."""
 
 from linkwright.sweep.scenario import Normal, Uniform, scenario
 

@@ -1,4 +1,7 @@
-"""The finished runs of a sweep, stored line by line in a file next to its table, so that it can resume."""
+"""The finished runs of a sweep, in a file beside the table, so that the sweep can be resumed.
+
+The file has one line per run.
+"""
 
 from __future__ import annotations
 
@@ -20,11 +23,11 @@ _ENDING = ".unfinished"
 
 
 class Journal:
-    """The outcomes of a sweep that is not finished yet.
+    """The outcomes of a sweep that is not complete yet.
 
     Args:
         table: the file of the table.
-        fingerprint: the fingerprint of the plan; the journal of another plan is not resumed.
+        fingerprint: the fingerprint of the plan; a journal of another plan is rejected.
         resume: whether to resume an existing journal.
 
     Attributes:
@@ -32,8 +35,8 @@ class Journal:
         outcomes: the outcomes by row number.
 
     Raises:
-        LinkwrightError: SWEEP107, there is a journal, and `resume` is not set; SWEEP108, it belongs to another plan;
-            SWEEP109, there is none; SWEEP110, it cannot be written.
+        LinkwrightError: SWEEP107, there is a journal, and `resume` is not set; SWEEP108, the journal belongs to another
+            plan; SWEEP109, there is no journal to resume; SWEEP110, the file cannot be written.
     """
 
     def __init__(self, table: Path, fingerprint: str, *, resume: bool) -> None:
@@ -75,16 +78,16 @@ class Journal:
             self.remove()
 
     def add(self, outcome: Outcome) -> None:
-        """Store an outcome.
+        """Append an outcome to the file.
 
         Raises:
-            LinkwrightError: SWEEP110, it cannot be written.
+            LinkwrightError: SWEEP110, the file cannot be written.
         """
         self.outcomes[outcome.row] = outcome
         self._write(_line(outcome))
 
     def remove(self) -> None:
-        """Remove the file, because the sweep is finished."""
+        """Delete the file after the sweep is complete."""
         self.path.unlink()
 
     def _write(self, line: dict[str, Any]) -> None:
@@ -107,7 +110,7 @@ class Journal:
 
 @contextmanager
 def reporting_write_errors(path: Path) -> Iterator[None]:
-    """Report a file that cannot be written as a diagnostic.
+    """Convert an OSError in the context to a LinkwrightError.
 
     Raises:
         LinkwrightError: SWEEP110, the file cannot be written.
@@ -126,7 +129,7 @@ def _line(outcome: Outcome) -> dict[str, Any]:
 
 
 def _parsed(line: str) -> dict[str, Any] | None:
-    """Return the entry of a line, or None for a line that was cut off."""
+    """Parse a line of the journal; return None for a truncated line."""
     try:
         entry = json.loads(line)
     except ValueError:

@@ -1,4 +1,4 @@
-"""The summary of a sweep as one HTML page, which needs neither a server nor a network."""
+"""The summary of a sweep as one self-contained HTML page."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ code { font: 12px ui-monospace, monospace; }
 
 
 def summary(table: Table, name: str, command: str, planned: int) -> str:
-    """Return the summary page.
+    """Return the HTML of the summary page.
 
     Args:
         table: the finished runs of the sweep.
@@ -86,7 +86,10 @@ def _escaped(text: Phrase) -> str:
 
 
 def _finite(table: Table, name: str) -> list[int]:
-    """Return the indices of the rows whose result is a number; True and False count as 1 and 0."""
+    """Return the indices of the rows in which a result is a finite number.
+
+    True and False count as 1 and 0.
+    """
     values = table.columns[name]
     return [place for place, value in enumerate(values) if isinstance(value, int | float) and isfinite(value)]
 
@@ -97,7 +100,7 @@ def _of(table: Table, name: str) -> list[float]:
 
 
 def _varied(table: Table) -> list[str]:
-    """Return the parameters with more than one value, or the seed if there are none."""
+    """Return the parameters that have several values, or the seed if no parameter has."""
     varied = [parameter for parameter in table.parameters[:-1] if len(set(table.columns[parameter])) > 1]
     return varied or [parameter for parameter in table.parameters[-1:] if len(set(table.columns[parameter])) > 1]
 

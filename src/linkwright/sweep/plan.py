@@ -1,4 +1,4 @@
-"""The runs of a scenario, each with its values and its seed."""
+"""The runs of a scenario, each with parameter values and a seed."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Run:
     Attributes:
         row: the row number, starting at 1.
         parameters: the values by parameter name.
-        seed: the seed.
+        seed: the seed of the random numbers.
     """
 
     row: int
@@ -32,10 +32,10 @@ class Run:
 
 
 def plan_runs(scenario: Scenario) -> list[Run]:
-    """Return all runs of a scenario, in which the seeds for the same values follow each other.
+    """Return all runs of a scenario; runs with the same values and different seeds are adjacent.
 
-    A drawn value depends only on the seed and on the name of the parameter: the same seed draws the same value when
-    other parameters or the number of seeds change.
+    A drawn value depends only on the seed and the name of the parameter. It does not change if other parameters or
+    seeds are added.
     """
     lists = {name: values for name, values in scenario.parameters.items() if not isinstance(values, Uniform | Normal)}
     drawn = {seed: _drawn(scenario, seed) for seed in scenario.seeds}
@@ -49,11 +49,11 @@ def plan_runs(scenario: Scenario) -> list[Run]:
 
 
 def with_values(scenario: Scenario, texts: Mapping[str, str], seeds: int | None) -> Scenario:
-    """Return a scenario with other values than those in its file.
+    """Return a copy of a scenario with other parameter values or seeds.
 
     Args:
         scenario: the scenario.
-        texts: for each parameter name, values in YAML, separated by commas.
+        texts: for each parameter name, YAML values separated by commas.
         seeds: the number of seeds; None for the seeds of the file.
 
     Raises:
@@ -69,7 +69,7 @@ def with_values(scenario: Scenario, texts: Mapping[str, str], seeds: int | None)
 
 
 def fingerprint(scenario: Scenario, runs: Sequence[Run]) -> str:
-    """Return a hash that changes when the scenario's file or its runs do."""
+    """Return a hash of the scenario's file and runs."""
     plan = json.dumps([(run.parameters, run.seed) for run in runs])
     return hashlib.sha256(scenario.path.read_bytes() + plan.encode()).hexdigest()
 

@@ -1,4 +1,4 @@
-"""SVG plots of a sweep, which only need a browser."""
+"""Plots of a sweep in SVG."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ _RADIUS = 3.0
 
 @dataclass(frozen=True)
 class Axis:
-    """An axis of a plot, which maps values to positions.
+    """An axis of a plot, which maps values to coordinates in the drawing.
 
     Attributes:
-        low, high: the values at its two ends.
-        ticks: positions with their labels.
-        begin, end: the positions of its ends in the drawing.
+        low, high: the values at the two ends.
+        ticks: the positions of the ticks with their labels.
+        begin, end: the coordinates of the two ends.
     """
 
     low: float
@@ -35,7 +35,7 @@ class Axis:
 
     @classmethod
     def of_numbers(cls, values: Sequence[float], begin: float, end: float, *, from_zero: bool = False) -> Axis:
-        """Return an axis that covers all values, with round numbers at its ticks."""
+        """Return an axis that covers all values, with ticks at round numbers."""
         low, high = min(values), max(values)
         if from_zero:
             low = 0.0
@@ -53,16 +53,16 @@ class Axis:
 
     @classmethod
     def of_names(cls, names: Sequence[str], begin: float, end: float) -> Axis:
-        """Return an axis with a position for each name, the first at 0."""
+        """Return an axis with a position for each name; the first has the value 0."""
         return cls(-0.5, len(names) - 0.5, [(float(place), name) for place, name in enumerate(names)], begin, end)
 
     def __call__(self, value: float) -> float:
-        """Return the position of a value in the drawing."""
+        """Return the coordinate of a value in the drawing."""
         return self.begin + (value - self.low) / (self.high - self.low) * (self.end - self.begin)
 
 
 def histogram(values: Sequence[float], label: str) -> str:
-    """Return a histogram of a result as SVG."""
+    """Return a histogram of the values of a result, in SVG."""
     counts, edges = np.histogram(np.asarray(values, dtype=float), bins=min(_BARS, max(len(set(values)), 5)))
     across = Axis.of_numbers([float(edges[0]), float(edges[-1])], _LEFT, _WIDTH - _RIGHT)
     upwards = Axis.of_numbers([float(counts.max())], _HEIGHT - _BOTTOM, _TOP, from_zero=True)
@@ -80,9 +80,9 @@ def histogram(values: Sequence[float], label: str) -> str:
 def scatter(
     across_values: Sequence[object], values: Sequence[float], rows: Sequence[object], across_label: str, label: str
 ) -> str:
-    """Return a plot of a result against a parameter.
+    """Return a scatter plot of a result against a parameter, in SVG.
 
-    It has a point for each run, and a line through the means of equal values.
+    The plot has a point for each run, and a line through the mean results of equal parameter values.
     """
     numbers = all(isinstance(value, int | float) and not isinstance(value, bool) for value in across_values)
     names = [] if numbers else list(dict.fromkeys(map(str, across_values)))
@@ -105,9 +105,9 @@ def scatter(
 
 
 def _means(places: Sequence[float], values: Sequence[float], across: Axis, upwards: Axis) -> str:
-    """Return a line through the mean of the values at each position.
+    """Return a line through the mean of the values at each position, in SVG.
 
-    It is empty if few positions occur repeatedly.
+    The result is empty if too few positions have several values.
     """
     groups: dict[float, list[float]] = {}
     for place, value in zip(places, values, strict=True):
@@ -144,6 +144,6 @@ def _drawing(across: Axis, upwards: Axis, label: str, content: str, across_label
 
 
 def _round_step(least: float) -> float:
-    """Return the next larger number of the form 1, 2 or 5 times a power of ten."""
+    """Return the smallest number of the form 1, 2 or 5 times a power of ten that is at least `least`."""
     power = 10.0 ** floor(log10(least))
     return next(factor * power for factor in (1.0, 2.0, 5.0, 10.0) if factor * power >= least * (1 - 1e-9))

@@ -1,4 +1,4 @@
-"""Run a scenario in processes of a Ray cluster."""
+"""Runs a scenario in processes of a Ray cluster."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ _scenario: Scenario | None = None
 
 
 def run_on_ray(path: Path, runs: Iterable[Run], address: str, report: Report) -> None:
-    """Run a scenario on a Ray cluster, which receives the files in the scenario's folder.
+    """Run a scenario on a Ray cluster, after copying the files in the scenario's folder to it.
 
-    If a process or machine is lost, its run is repeated once.
+    If a process or machine fails, its run is repeated once.
 
     Args:
         path: the scenario's file.
-        runs: the runs.
+        runs: the runs to execute.
         address: the address of the cluster, as ``ray.init`` accepts it.
         report: called with the outcome of each run when the run has finished.
 
@@ -69,7 +69,7 @@ def run_on_ray(path: Path, runs: Iterable[Run], address: str, report: Report) ->
 
 
 def _connected(path: Path, address: str) -> Any:
-    os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")  # Ray must not send usage data without consent
+    os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")  # disable usage statistics, which Ray sends without asking
     try:
         import ray  # type: ignore[import-not-found, import-untyped, unused-ignore]
     except ModuleNotFoundError as error:
@@ -91,9 +91,9 @@ def _connected(path: Path, address: str) -> Any:
 
 
 def _reach(address: str) -> None:
-    """Check that an address with a port accepts connections.
+    """Check that an address accepts connections, if it has a port.
 
-    Ray would retry for minutes, and log each attempt.
+    Without this check, Ray would retry for minutes, and log each attempt.
 
     Raises:
         OSError: the address does not accept connections.
@@ -106,7 +106,7 @@ def _reach(address: str) -> None:
 def _run_there(name: str, run: Run) -> Outcome:
     """Execute a run in a process of the cluster.
 
-    The working directory of the process contains the files that were sent.
+    The working directory of the process contains the copied files.
     """
     global _scenario  # noqa: PLW0603 - the process is used for one run after the other
     path = Path(name).absolute()

@@ -1,4 +1,4 @@
-"""Run a scenario once."""
+"""Executes single runs of a scenario."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Outcome:
 
     Attributes:
         row: the row number of the run.
-        results: the results that the scenario returned.
+        results: the results by name that the scenario returned.
         error: the reason why there are no results; empty if the run succeeded.
     """
 
@@ -41,7 +41,7 @@ class BadResultError(Exception):
 
 
 def prepare(path: Path) -> Scenario:
-    """Load a scenario to run it in this process, with its folder as the working directory.
+    """Load a scenario, and change to the scenario's folder, to run it in this process.
 
     The scenario can import ROS modules, such as ``rclpy`` and ``geometry_msgs.msg``.
 
@@ -55,7 +55,7 @@ def prepare(path: Path) -> Scenario:
 
 
 def run_once(scenario: Scenario, run: Run) -> Outcome:
-    """Run a scenario; an exception that it raises becomes the error of the outcome."""
+    """Run a scenario, and return the outcome; an exception becomes the outcome's error."""
     try:
         return Outcome(run.row, results_of(scenario, run))
     except (Exception, SystemExit) as error:  # noqa: BLE001 - a scenario may raise whatever it likes
@@ -65,7 +65,9 @@ def run_once(scenario: Scenario, run: Run) -> Outcome:
 
 
 def results_of(scenario: Scenario, run: Run) -> dict[str, Result]:
-    """Run a scenario and check its results; ``random`` and ``numpy.random`` are seeded first.
+    """Run a scenario and return its results, after checking that a table can store them.
+
+    ``random`` and ``numpy.random`` are seeded before the run.
 
     Raises:
         BadResultError: a table cannot store the results.

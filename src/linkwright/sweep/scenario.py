@@ -1,4 +1,4 @@
-"""Scenarios, and loading one from its file."""
+"""Declaration of scenarios, and loading of a scenario from its file."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ COLUMNS = ("row", SEED, "error")
 
 @dataclass(frozen=True, slots=True)
 class Uniform:
-    """A number that is drawn for each seed, uniformly from `low` to `high`."""
+    """A parameter value that is drawn for each seed, uniformly distributed from `low` to `high`."""
 
     low: float
     high: float
@@ -46,7 +46,7 @@ class Uniform:
 
 @dataclass(frozen=True, slots=True)
 class Normal:
-    """A number that is drawn for each seed from a normal distribution."""
+    """A parameter value that is drawn for each seed from a normal distribution."""
 
     mean: float
     stddev: float
@@ -58,7 +58,7 @@ Values = Sequence[Value] | Uniform | Normal
 
 @dataclass(frozen=True)
 class Scenario:
-    """A function that is run once for each combination of values and each seed.
+    """A function that is run once for each combination of parameter values and seeds.
 
     Attributes:
         path: the file of the scenario.
@@ -103,11 +103,12 @@ def scenario(*, seeds: int | Sequence[int] = 1, **parameters: Values) -> Callabl
 
 
 def load_scenario(path: Path) -> Scenario:
-    """Load a scenario from its file, which is run as a module; it can import modules from its folder.
+    """Load a scenario by running its file as a module, which can import modules from its folder.
 
     Raises:
-        LinkwrightError: SWEEP101, it cannot be read; SWEEP102, it cannot be run; SWEEP103, it does not contain exactly
-            one scenario; SWEEP104, its parameters are not those of the function; SWEEP105, the values are not valid.
+        LinkwrightError: SWEEP101, the file cannot be read; SWEEP102, the file cannot be run; SWEEP103, the file does
+            not contain exactly one scenario; SWEEP104, the declared parameters are not those of the
+            function; SWEEP105, the values are not valid.
     """
     module = _loaded(path)
     found = [candidate for candidate in vars(module).values() if callable(candidate) and hasattr(candidate, _DECLARED)]
@@ -130,7 +131,7 @@ def load_scenario(path: Path) -> Scenario:
 
 
 def check_values(name: str, values: object, span: Span | None = None) -> None:
-    """Check that a parameter can be varied over the given values.
+    """Check that the values of a parameter can be varied by a sweep.
 
     Raises:
         LinkwrightError: SWEEP105, the values are not valid.
@@ -242,7 +243,7 @@ def _cannot_run(path: Path, error: BaseException) -> LinkwrightError:
 
 
 def line_of(path: Path, error: BaseException) -> int | None:
-    """Return the line of a file that raised an error, or that called the code that raised it."""
+    """Return the last line of a file in the traceback of an error, or None if the file is not in it."""
     lines = [
         frame_summary.lineno
         for frame_summary in traceback.extract_tb(error.__traceback__)
@@ -252,7 +253,7 @@ def line_of(path: Path, error: BaseException) -> int | None:
 
 
 def described(error: BaseException) -> str:
-    """Return an error as one line of text."""
+    """Format an error in one line."""
     if isinstance(error, LinkwrightError):
         first = error.diagnostics[0]
         return f"{first.code} {first.span}: {first.message}" if first.span else f"{first.code} {first.message}"

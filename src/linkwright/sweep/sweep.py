@@ -1,4 +1,4 @@
-"""Run a sweep from its plan to its table."""
+"""Runs a sweep from its plan to its table."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ Runner = Callable[[Sequence[Run], Callable[[Outcome], None]], None]
 
 @dataclass(frozen=True)
 class Sweep:
-    """A scenario to run, and the files for its results.
+    """A scenario with the files for the results.
 
     Attributes:
         scenario: the scenario.
-        table: the file of the table; its extension selects the format.
-        words: the command line that runs the sweep, which the page shows for reruns.
+        table: the file of the table, whose extension selects the format.
+        words: the command line that runs the sweep, which the summary page shows for reruns.
     """
 
     scenario: Scenario
@@ -40,17 +40,17 @@ class Sweep:
         return self.table.with_suffix(".html")
 
     def run(self, runner: Runner, *, resume: bool, progress: Callable[[int, int, int], None]) -> Table:
-        """Execute all unfinished runs, and write the table and the summary.
+        """Execute all runs that have no outcome yet, and write the table and the summary page.
 
         The files are also written after an interruption.
 
         Args:
             runner: executes the runs.
-            resume: whether to resume an unfinished sweep.
+            resume: whether to resume an incomplete sweep.
             progress: called with the numbers of finished, planned and failed runs.
 
         Returns:
-            The table, without the runs that an interruption prevented.
+            The table, which lacks the runs that an interruption prevented.
 
         Raises:
             LinkwrightError: an error of the journal, see `Journal`; SWEEP110, a file cannot be written.

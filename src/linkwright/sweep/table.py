@@ -20,11 +20,11 @@ FORMATS = (".csv", ".parquet")
 
 @dataclass(frozen=True)
 class Table:
-    """The rows of a sweep in the order of their numbers, regardless of the order in which they finished.
+    """The runs of a sweep, ordered by row number.
 
     Attributes:
         parameters: the names of parameters, and ``seed``.
-        results: the names of results, in the order of their first occurrence in the rows.
+        results: the names of results, in the order of their first occurrence.
         columns: by name, a value for each row: ``row``, parameters, ``seed``, results, ``error``; None for a value that
             a row does not have.
     """
@@ -51,15 +51,15 @@ class Table:
 
     @property
     def failed(self) -> list[int]:
-        """The indices of the rows with an error."""
+        """The indices in the columns of the rows that have an error."""
         return [place for place, error in enumerate(self.columns["error"]) if error]
 
 
 def check_format(path: Path) -> None:
-    """Check before the first run that a table can be written in the format of a file.
+    """Check that a table can be written to a file of this format, before the first run.
 
     Raises:
-        LinkwrightError: SWEEP110, its extension is not that of a table; SWEEP111, pyarrow is not installed.
+        LinkwrightError: SWEEP110, the extension is not supported; SWEEP111, pyarrow is not installed.
     """
     if path.suffix not in FORMATS or path.is_dir():
         message = phrase("'{path}' cannot be the file of a table", path=str(path))
@@ -69,12 +69,12 @@ def check_format(path: Path) -> None:
 
 
 def table_bytes(table: Table, path: Path) -> bytes:
-    """Return the table as bytes in the format that the file's extension selects."""
+    """Serialize the table in the format that the file's extension selects."""
     return _parquet(table) if path.suffix == ".parquet" else _csv(table)
 
 
 def _csv(table: Table) -> bytes:
-    """Return the table as CSV with a header line; numbers are written as Python writes them, without loss."""
+    """Serialize the table as CSV with a header line; floats are written without loss of precision."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(table.columns)
@@ -101,7 +101,7 @@ def _parquet(table: Table) -> bytes:
 def _alike(values: Sequence[Result]) -> list[Result]:
     """Convert values to one type, as a Parquet column requires.
 
-    Integers and floats become floats; other mixed types become texts.
+    Integers and floats become floats; other mixed types become strings.
     """
     kinds = {type(value) for value in values if value is not None}
     if len(kinds) < 2:

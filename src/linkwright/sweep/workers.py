@@ -1,4 +1,4 @@
-"""Run a scenario in processes on this machine."""
+"""Runs a scenario in processes on this machine."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ Report = Callable[[Outcome], None]
 def run_locally(path: Path, runs: Iterable[Run], workers: int, report: Report) -> None:
     """Run a scenario in separate processes.
 
-    If one of them dies, another replaces it, and its run is repeated once.
+    If a process dies, it is replaced, and its run is repeated once.
 
     Args:
         path: the scenario's file.
-        runs: the runs.
+        runs: the runs to execute.
         workers: the number of parallel processes.
-        report: called with the outcome of each run, in the order in which they finish.
+        report: called with the outcome of each run, in the order in which the runs finish.
     """
     waiting = deque(runs)
     attempts: dict[int, int] = {}
@@ -69,7 +69,7 @@ def run_locally(path: Path, runs: Iterable[Run], workers: int, report: Report) -
 
 
 class _Worker:
-    """A process that executes one run after the other, and the connection to it."""
+    """A process that executes runs one after another, and the connection to this process."""
 
     def __init__(self, path: Path) -> None:
         spawn = multiprocessing.get_context("spawn")
@@ -81,13 +81,13 @@ class _Worker:
         theirs.close()
 
     def start_run(self, run: Run) -> None:
-        """Send a run to the process."""
+        """Send a run to the process, which executes it."""
         self.run = run
-        with suppress(OSError):  # the process has died, which the caller notices when it waits for the outcome
+        with suppress(OSError):  # the process has died, as the caller learns when waiting for the outcome
             self.connection.send(run)
 
     def outcome(self) -> Outcome | None:
-        """Return the outcome of the run, or None if the process has died."""
+        """Receive the outcome of the run; return None if the process has died."""
         try:
             outcome: Outcome = self.connection.recv()
         except (EOFError, OSError):
@@ -95,11 +95,11 @@ class _Worker:
         return outcome
 
     def stop(self) -> None:
-        """End the process immediately, even during a run."""
+        """Kill the process, even during a run."""
         self._process.terminate()
 
     def end(self) -> str:
-        """Wait until the process has ended, and return a description of how it ended."""
+        """Wait until the process has ended, and return a description of its exit status."""
         self.connection.close()
         self._process.join(_PATIENCE)
         if self._process.is_alive():
@@ -111,7 +111,7 @@ class _Worker:
 
 
 def _serve(path: Path, connection: Connection) -> None:
-    """Execute the runs that the connection sends; this is the main function of a worker."""
+    """Execute the runs received from the connection, as the main function of a worker."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
     sys.stdout = sys.stderr
@@ -127,7 +127,7 @@ def _serve(path: Path, connection: Connection) -> None:
 
 
 def _end_with_parent() -> None:
-    """End this process when its parent ends for any reason, so that no run outlives the parent."""
+    """Make this process end when its parent ends for any reason, so that no run outlives the parent."""
     parent = multiprocessing.parent_process()
     assert parent is not None, "it is a process of a pool"
     parent.join()
@@ -136,7 +136,10 @@ def _end_with_parent() -> None:
 
 @contextmanager
 def _no_interrupt() -> Iterator[None]:
-    """Block Ctrl-C while a process is started, because processes inherit the blocked signals."""
+    """Block Ctrl-C in the context, in which a process is started.
+
+    The new process inherits the blocked signal.
+    """
     if sys.platform == "win32":
         yield
         return

@@ -1,6 +1,6 @@
-"""Test nodes in graphs whose time passes only when the test advances it: an hour takes milliseconds.
+"""Tests of nodes in graphs whose time passes only when the test advances it.
 
-With `SteppedSimulation` a simulated world advances in step with the graph.
+An hour of such time takes milliseconds. With `SteppedSimulation`, a simulated world advances together with the graph.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Record the messages that are published on a topic during a test."""
+"""Records the messages that are published on a topic during a test."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from linkwright.graph import (
 
 
 class Recording:
-    """The messages of a topic, in the order of arrival; created by ``record`` of a stepped graph.
+    """The messages of a topic in the order of arrival, created by ``record`` of a stepped graph.
 
-    It subscribes as soon as the topic's type is known, that is, when a node publishes or subscribes to the topic. It
-    can therefore be created before the node under test. It includes the messages that a transient local publisher
-    stores.
+    The subscription is created as soon as the topic's type is known, that is, when a node publishes or subscribes to
+    the topic. A recording can therefore be created before the node under test. The messages that a transient local
+    publisher stores are included.
 
     Attributes:
-        topic: the topic's absolute name.
+        topic: the absolute name of the topic.
         messages: the messages.
         times: the time of each message, in seconds since the beginning of the test.
     """
@@ -45,7 +45,7 @@ class Recording:
 
     @property
     def last(self) -> Any:
-        """The message that was received last.
+        """The last message that was received.
 
         Raises:
             AssertionError: no message was received.

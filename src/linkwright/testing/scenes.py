@@ -1,4 +1,4 @@
-"""Worlds and robots for simulations, which are only read again after their files have changed."""
+"""Loads worlds and robots for simulations, and caches them until their files change."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _cache: dict[tuple[object, ...], _CacheEntry] = {}
 
 
 def read_world(name: str | Path) -> LoadedWorld:
-    """Return a world by its file or name, with its includes, as `load_world` reads it.
+    """Load a world by its file or name, including the files that it includes.
 
     Raises:
         LinkwrightError: the errors of `load_world`.
@@ -41,10 +41,10 @@ def read_world(name: str | Path) -> LoadedWorld:
 
 
 def read_model(path: Path, arguments: Mapping[str, str]) -> Model:
-    """Return the robot or model of a URDF, xacro or SDF file.
+    """Load the robot or model of a URDF, xacro or SDF file.
 
     Raises:
-        LinkwrightError: SIM142, the file contains no model; the file has errors.
+        LinkwrightError: SIM142, the file contains no model; or the file has errors.
     """
 
     def read() -> tuple[Model, tuple[Path, ...]]:

@@ -1,4 +1,4 @@
-"""A simulated world for tests that advances together with the graph, step by step."""
+"""A simulated world for tests, which advances together with the graph, step by step."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ _ORIGIN = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 class AsyncSteppedSimulation(AsyncSteppedGraph):
-    """`SteppedSimulation` for tests that are coroutines, with the same arguments and attributes."""
+    """`SteppedSimulation` for tests that are coroutines; arguments and attributes are the same."""
 
     def __init__(
         self,
@@ -119,7 +119,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
 
     @property
     def server(self) -> SimulationServer:
-        """The server that runs the plugins.
+        """The server that runs the simulation and its plugins.
 
         Raises:
             RuntimeError: the test has not started.
@@ -163,7 +163,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         self.publish(topic, message)
 
     async def settle(self) -> None:
-        """Run all callbacks that are ready, and those that they cause, in the graph and the simulation.
+        """Run all ready callbacks of the graph and the simulation, and callbacks that these cause.
 
         Time does not pass.
 
@@ -178,11 +178,11 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
     spin = settle
 
     async def advance(self, seconds: float) -> None:
-        """Let time pass in the simulation and in the graph.
+        """Advance the time of the simulation and of the graph.
 
         Raises:
             UnstableError: a value in the simulation is no longer finite.
-            Exception: the error of a callback; time has passed nevertheless.
+            Exception: the error of a callback; the time has advanced nevertheless.
         """
         await self.settle()
         self._left += round(seconds * NANOSECONDS_PER_SECOND)
@@ -202,9 +202,9 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         self._raise()
 
     async def reset(self) -> None:
-        """Restore the initial state of the world; simulated time and noise start again.
+        """Restore the initial state of the world, of simulated time and of the noise.
 
-        Nodes and recorded messages stay, and the time of day is not reset.
+        Nodes and recorded messages remain, and the time of day is not reset.
         """
         self.server.reset()
         self._left = 0
@@ -220,7 +220,10 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
 def _taking_what(
     make: Callable[_P, AsyncSteppedSimulation],
 ) -> Callable[[Callable[[_T, AsyncSteppedSimulation], None]], Callable[Concatenate[_T, _P], None]]:
-    """Give an ``__init__`` the signature of the asynchronous class, and pass it an instance of that class."""
+    """Return a decorator that gives an ``__init__`` the signature of the asynchronous class.
+
+    The decorated method receives an instance of that class instead of the arguments.
+    """
 
     def decorate(init: Callable[[_T, AsyncSteppedSimulation], None]) -> Callable[Concatenate[_T, _P], None]:
         @wraps(AsyncSteppedSimulation.__init__)
@@ -233,42 +236,40 @@ def _taking_what(
 
 
 class SteppedSimulation(SteppedGraph):
-    """A simulated world and a graph; the time of both passes only in `advance`.
+    """A simulated world and a graph whose time passes only in `advance`.
 
     >>> with SteppedSimulation("empty", "package://my_robot_description/urdf/mbot_gazebo.xacro") as test:
-    ...     odometry = test.record("/odom")
-    ...     test.drive(0.5)
-    ...     test.advance(2.5)
-    ...     1.0 < odometry.last.pose.pose.position.x < 1.25
-    True
+    ...     odometry = test.record("/odom") ...     test.drive(0.5) ...     test.advance(2.5) ...     1.0 <
+    odometry.last.pose.pose.position.x < 1.25 True
 
-    It uses neither threads nor real time. The world moves for a `period`. Then the graph calls the timers that are due,
-    publishes the time on ``/clock``, receives the messages of plugins and sensors, and runs the callbacks that they
-    cause. After that the world moves again, with the commands that were received in the meantime. The same test gives
-    the same bits each time. Nodes written for rclpy run in it after `init_rclpy`, and follow simulated time if the
-    parameter ``use_sim_time`` is set.
+    Neither threads nor real time are used. The world moves for a `period`. Then the graph calls the timers whose time
+    has come, publishes the time on ``/clock``, receives the messages of plugins and sensors, and runs the callbacks
+    that these cause. After that the world moves again, with the commands that were received in the meantime. The
+    results of a test are therefore bit-identical in each run. Nodes written for rclpy run in the graph after
+    `init_rclpy`, and follow simulated time if the parameter ``use_sim_time`` is set.
 
-    It offers the services of a simulator: ``/spawn_entity``, ``/delete_entity``, ``/set_entity_state``,
+    The simulation offers the services of a simulator: ``/spawn_entity``, ``/delete_entity``, ``/set_entity_state``,
     ``/pause_physics`` and so on; `spawn` and `delete` correspond to the first two.
 
-    Topics have the names that ``linkwright sim`` gives them: ``/cmd_vel``, ``/odom``, ``/scan``. Worlds and robots are
-    read once per process; a robot whose files have changed is read again.
+    Topics have the same names as in ``linkwright sim``: ``/cmd_vel``, ``/odom``, ``/scan``. Worlds and robots are read
+    once per process; a robot whose files have changed is read again.
 
     Args:
         world: an SDF file, or the name of a world.
-        robot: a URDF, xacro or SDF file to spawn in the world, or its ``package://`` address; None for no robot.
+        robot: a URDF, xacro or SDF file to spawn in the world, or its ``package://`` URI; None for no robot.
         arguments: values for the ``<xacro:arg>`` elements of the robot.
-        pose: the robot's initial pose: x, y, z in m, roll, pitch, yaw in rad.
+        pose: the initial pose of the robot: x, y, z in m, roll, pitch, yaw in rad.
         seed: the seed of all noise.
         friction: the coefficient of friction of the world's static models, above all of the ground; None for the values
             of the file. Between two bodies in contact the lower value applies.
         mass: the factor for the robot's masses and inertias.
-        noise: the factor for the noise of its sensors; 0 for exact measurements.
-        robot_state_publisher: whether a robot_state_publisher runs for the robot, with its description and the
-            transforms of its links, which follow ``/joint_states``.
+        noise: the factor for the noise of the robot's sensors; 0 for exact measurements.
+        robot_state_publisher: whether a robot_state_publisher runs for the robot, which publishes the description and
+            the transforms of the links from ``/joint_states``.
         period: the time that the world moves between two steps of the graph, in s.
         start: the time of day at the start, in seconds since the epoch.
-        strict: whether errors of callbacks are raised by the step in which they happen; else they are only logged.
+        strict: whether the step in which a callback fails raises the callback's error; otherwise errors are only
+            logged.
 
     Raises:
         LinkwrightError: SIM101, MuJoCo is not installed; SIM150, there is no such world; SIM142, the file contains no
@@ -284,7 +285,7 @@ class SteppedSimulation(SteppedGraph):
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._steps.server.close()  # first, because rclpy's shutdown would destroy the server's nodes
+        self._steps.server.close()  # close the server before rclpy shuts down, which would destroy the server's nodes
         super().__exit__(kind, error, trace)
 
     @property
@@ -301,21 +302,21 @@ class SteppedSimulation(SteppedGraph):
         namespace: str = "",
         arguments: Mapping[str, object] | None = None,
     ) -> str:
-        """Spawn another robot or model in the world, as ``/spawn_entity`` does with a text.
+        """Spawn another robot or model in the world, as the service ``/spawn_entity`` does.
 
         Args:
-            robot: a URDF, xacro or SDF file, or its ``package://`` address.
-            name: the model's name; empty for the name in the file.
-            pose: the pose of its frame: x, y, z in m, roll, pitch, yaw in rad.
-            namespace: the default namespace for the nodes of its plugins.
+            robot: a URDF, xacro or SDF file, or its ``package://`` URI.
+            name: the name of the model; empty for the name in the file.
+            pose: the pose of the model's frame: x, y, z in m, roll, pitch, yaw in rad.
+            namespace: the default namespace for the nodes of the model's plugins.
             arguments: values for the ``<xacro:arg>`` elements of the robot.
 
         Returns:
-            The model's name.
+            The name of the model.
 
         Raises:
-            LinkwrightError: SIM102, there is already a model with this name; SIM140, it cannot be simulated; SIM142,
-                the file contains no model; the file has errors.
+            LinkwrightError: SIM102, there is already a model with this name; SIM140, the model cannot be simulated;
+                SIM142, the file contains no model; or the file has errors.
         """
         return self._steps.spawn(robot, name, pose=pose, namespace=namespace, arguments=arguments)
 
@@ -328,11 +329,14 @@ class SteppedSimulation(SteppedGraph):
         self._steps.delete(name)
 
     def robot_pose(self) -> Transform:
-        """Return the true pose of the robot's frame in the world: x, y, z in m and a quaternion x, y, z, w."""
+        """Return the true pose of the robot's frame in the world.
+
+        The pose consists of x, y, z in m and a quaternion x, y, z, w.
+        """
         return self._steps.robot_pose()
 
     def drive(self, linear: float, angular: float = 0.0, topic: str = "/cmd_vel") -> None:
-        """Command the robot's velocity from the next step on.
+        """Set the commanded velocity of the robot, which applies from the next step on.
 
         Args:
             linear: the forward velocity, in m/s.
@@ -347,13 +351,13 @@ class SteppedSimulation(SteppedGraph):
 
 
 def _gripping(world: World, friction: float) -> World:
-    """Return a world whose static models have another coefficient of friction."""
+    """Return a copy of a world whose static models have the given coefficient of friction."""
     models = tuple(with_friction(model, friction) if model.static else model for model in world.models)
     return replace(world, models=models)
 
 
 class _Progress:
-    """Lets the services of a simulator pause the simulation and run single steps."""
+    """Implements the simulator services that pause the simulation and run single steps."""
 
     def __init__(self, simulation: Simulation) -> None:
         self.paused = False
@@ -378,7 +382,7 @@ def _model(path: Path, arguments: Mapping[str, object]) -> Model:
 
 
 def _described(path: Path, arguments: Mapping[str, object]) -> str:
-    """Return the description of a robot from its file.
+    """Read a robot's file, and return the description as URDF or SDF.
 
     Raises:
         LinkwrightError: the file has errors.
@@ -397,5 +401,5 @@ def _transform(pose: Sequence[float]) -> Transform:
 
 
 def _text(value: object) -> str:
-    """Return a value as text in the notation of xacro arguments."""
+    """Format a value as a xacro argument."""
     return str(value).lower() if isinstance(value, bool) else str(value)

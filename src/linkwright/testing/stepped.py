@@ -1,4 +1,4 @@
-"""A graph for tests in coroutines, whose time passes in steps."""
+"""A graph whose time passes in steps, for tests that are coroutines."""
 
 from __future__ import annotations
 
@@ -27,8 +27,9 @@ _NODE = "test"
 class AsyncSteppedGraph:
     """A graph whose time passes only in `advance`: an hour of timers, rates and throttles takes milliseconds.
 
-    Everything runs in one thread, in a reproducible order. An error in a callback is raised by the step in which it
-    happens. For tests that are not coroutines, use `SteppedGraph`.
+    Everything runs in one thread, in a reproducible order. If a callback fails, the step in which it runs raises the
+    error.
+    For tests that are not coroutines, use `SteppedGraph`.
 
     Example::
 
@@ -38,20 +39,20 @@ class AsyncSteppedGraph:
                 node = test.create_node("talker")
                 publisher = node.create_publisher(String, "chatter", 10)
                 node.create_timer(0.5, lambda: publisher.publish(String(data=f"Hello: {len(chatter)}")))
-                await test.advance(3600.0)
-                assert len(chatter) == 7200
-                assert chatter.last.data == "Hello: 7199"
+                await test.advance(3600.0) assert len(chatter) == 7200 assert chatter.last.data ==
+                "Hello: 7199"
 
     Args:
         start: the time of day at the start, in seconds since the epoch.
-        strict: whether errors of callbacks are raised by the step in which they happen; else they are only logged.
+        strict: whether the step in which a callback fails raises the callback's error; otherwise errors are only
+            logged.
 
     Attributes:
-        clock: the clock; ``clock.jump(seconds)`` changes only the time of day, like a corrected system clock.
+        clock: the clock; ``clock.jump(seconds)`` changes only the time of day, as when a system clock is corrected.
         graph: the graph.
         node: the node of the test, ``/test``, for creating clients and other endpoints.
         log: the log messages of nodes.
-        errors: the errors of callbacks, if the graph is not `strict`.
+        errors: the errors of callbacks, if `strict` is not set.
     """
 
     def __init__(self, *, start: float = 1_700_000_000.0, strict: bool = True) -> None:
@@ -77,7 +78,7 @@ class AsyncSteppedGraph:
 
     @property
     def graph(self) -> Graph:
-        """The graph.
+        """The graph of the test.
 
         Raises:
             RuntimeError: the test has not started.
@@ -95,26 +96,26 @@ class AsyncSteppedGraph:
 
     @property
     def now(self) -> float:
-        """The seconds since the start of the test."""
+        """The time since the start of the test, in seconds."""
         return self.clock.steady_ns() / 1e9
 
     def create_node(self, name: str, **options: Any) -> Node:
-        """Create a node in the graph; arguments are those of ``Graph.create_node``."""
+        """Create a node in the graph; the options are the arguments of ``Graph.create_node``."""
         return self.graph.create_node(name, **options)
 
     def record(self, topic: str, msg_type: Any = None) -> Recording:
         """Record the messages that are published on a topic from now on.
 
         Args:
-            topic: the topic's name.
-            msg_type: the message class; by default the class of its first publisher or subscriber.
+            topic: the name of the topic.
+            msg_type: the message class; None for the class of the first publisher or subscriber.
         """
         return Recording(self.graph, self.node, topic, msg_type)
 
     def publish(self, topic: str, message: Any, qos_profile: QoSProfile | int = DEFAULT_QOS) -> None:
         """Publish a message, which subscribers receive in the next step.
 
-        The publisher is reused for later messages.
+        The publisher is created on the first call and used for later messages.
         """
         publisher = self._publishers.get(topic)
         if publisher is None:
@@ -123,7 +124,7 @@ class AsyncSteppedGraph:
         publisher.publish(message)
 
     async def settle(self) -> None:
-        """Run all callbacks that are ready, and those that they cause, while time does not pass.
+        """Run all ready callbacks, and the callbacks that these cause, without advancing time.
 
         Raises:
             Exception: the error of a callback.
@@ -134,12 +135,12 @@ class AsyncSteppedGraph:
     spin = settle
 
     async def advance(self, seconds: float) -> None:
-        """Let time pass.
+        """Advance the time of the graph.
 
-        Each timer is called when it is due, and the callbacks that it causes run before the next timer.
+        Timers are called in the order of their times. The callbacks that a timer causes run before the next timer.
 
         Raises:
-            Exception: the error of a callback; time has passed nevertheless.
+            Exception: the error of a callback; the time has advanced nevertheless.
         """
         await self.clock.advance(seconds)
         self._raise()
@@ -148,9 +149,9 @@ class AsyncSteppedGraph:
         """Call a service of the graph.
 
         Args:
-            service: the service's name.
-            request: the request.
-            timeout: the maximum seconds that may pass before the response arrives.
+            service: the name of the service.
+            request: the request message.
+            timeout: the maximum time to advance until the response arrives, in seconds.
 
         Returns:
             The response.

@@ -1,4 +1,4 @@
-"""A graph for tests that are plain functions, whose time passes in steps."""
+"""A graph whose time passes in steps, for tests that are plain functions."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class SteppedGraph:
-    """`AsyncSteppedGraph` for tests that are not coroutines; it has its own event loop, in the test's thread.
+    """`AsyncSteppedGraph` for tests that are not coroutines, with an event loop in the test's thread.
 
     >>> from linkwright.messages import String
     >>> with SteppedGraph() as test:
@@ -25,12 +25,10 @@ class SteppedGraph:
     ...     node = test.create_node("talker")
     ...     publisher = node.create_publisher(String, "chatter", 10)
     ...     timer = node.create_timer(0.5, lambda: publisher.publish(String(data=f"Hello: {len(chatter)}")))
-    ...     test.advance(3600.0)
-    ...     len(chatter), chatter.last.data
-    (7200, 'Hello: 7199')
+    ...     test.advance(3600.0) ...     len(chatter), chatter.last.data (7200, 'Hello: 7199')
 
-    A node that is written for rclpy is tested in the same way: after `init_rclpy` nodes are created in the test's
-    graph, and its steps run their callbacks without spinning::
+    A node that is written for rclpy is tested in the same way. After `init_rclpy`, rclpy's nodes are created in the
+    test's graph, and the steps of the graph run their callbacks without spinning::
 
         with SteppedGraph() as test:
             test.init_rclpy()
@@ -41,8 +39,9 @@ class SteppedGraph:
 
     Args:
         start: the time of day at the start, in seconds since the epoch.
-        strict: whether errors of callbacks are raised by the step in which they happen; else they are only logged.
-        steps: the asynchronous graph to wrap, if it is of a derived class; `start` and `strict` are then not used.
+        strict: whether the step in which a callback fails raises the callback's error; otherwise errors are only
+            logged.
+        steps: an asynchronous graph of a derived class to wrap; `start` and `strict` are then not used.
     """
 
     def __init__(
@@ -75,7 +74,7 @@ class SteppedGraph:
 
     @property
     def graph(self) -> Graph:
-        """The graph."""
+        """The graph of the test."""
         return self._steps.graph
 
     @property
@@ -95,19 +94,19 @@ class SteppedGraph:
 
     @property
     def errors(self) -> list[BaseException]:
-        """The errors of callbacks that the step does not raise."""
+        """The errors of callbacks, if the graph is not strict."""
         return self._steps.errors
 
     @property
     def now(self) -> float:
-        """The seconds since the start of the test."""
+        """The time since the start of the test, in seconds."""
         return self._steps.now
 
     def init_rclpy(self, args: list[str] | None = None) -> Context:
-        """Initialise rclpy with the test's graph; it is shut down at the end of the test.
+        """Initialise rclpy with the test's graph until the end of the test.
 
         Args:
-            args: the command line, with ROS arguments; empty by default.
+            args: the command line, with ROS arguments; None for an empty one.
 
         Returns:
             The default context of rclpy, in which nodes are created.
@@ -118,7 +117,7 @@ class SteppedGraph:
         return self._context
 
     def create_node(self, name: str, **options: Any) -> Node:
-        """Create a node in the graph; arguments are those of ``Graph.create_node``."""
+        """Create a node in the graph; the options are the arguments of ``Graph.create_node``."""
         return self._steps.create_node(name, **options)
 
     def record(self, topic: str, msg_type: Any = None) -> Recording:
@@ -130,7 +129,7 @@ class SteppedGraph:
         self._steps.publish(topic, message, qos_profile)
 
     def settle(self) -> None:
-        """Run all callbacks that are ready, and those that they cause, while time does not pass.
+        """Run all ready callbacks, and the callbacks that these cause, without advancing time.
 
         Raises:
             Exception: the error of a callback.
@@ -140,10 +139,10 @@ class SteppedGraph:
     spin = settle
 
     def advance(self, seconds: float) -> None:
-        """Let time pass; see `AsyncSteppedGraph.advance`.
+        """Advance the time of the graph; see `AsyncSteppedGraph.advance`.
 
         Raises:
-            Exception: the error of a callback; time has passed nevertheless.
+            Exception: the error of a callback; the time has advanced nevertheless.
         """
         self._run(self._steps.advance(seconds))
 
@@ -157,7 +156,7 @@ class SteppedGraph:
         return self._run(self._steps.call(service, request, timeout=timeout))
 
     def run(self, coroutine: Any) -> Any:
-        """Run a coroutine of the test on the graph's loop, and return its result; time does not pass."""
+        """Run a coroutine on the graph's event loop without advancing time, and return its result."""
         return self._run(coroutine)
 
     def _run(self, coroutine: Any) -> Any:

@@ -1,4 +1,4 @@
-"""The robot model: read, write and print URDF."""
+"""The robot model, and the reading, writing and printing of URDF."""
 
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
 from linkwright.geometry.single import Pose, Quaternion, Vector3

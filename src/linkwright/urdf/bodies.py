@@ -1,6 +1,6 @@
-"""Rigid bodies, each formed by links that fixed joints connect.
+"""Rigid bodies, each consisting of links that fixed joints connect.
 
-Simulators merge such links, so another link of the body may provide what a link lacks.
+Simulators merge such links, so another link of the body may provide the shapes or the mass that a link lacks.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ WORLD = "world"
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Body:
-    """Links that move as one body.
+    """Links that move together as one body.
 
     Attributes:
-        joint: the joint that moves it; None for the body of the robot's root.
-        frames: the frames of the links in the frame of the body's first link, by link name.
+        joint: the joint that moves the body, or None for the body of the robot's root.
+        frames: the placements of the links in the frame of the body's first link, by link name.
     """
 
     joint: Joint | None
@@ -47,7 +47,7 @@ class Bodies:
         return tuple(dict.fromkeys(self._by_link.values()))
 
     def of(self, link: str) -> Body | None:
-        """Return the body of a link."""
+        """Return the body that contains a link, or None if there is none."""
         return self._by_link.get(link)
 
     def members(self, body: Body) -> list[Link]:
@@ -58,7 +58,7 @@ class Bodies:
     def turns(self, link: str) -> bool:
         """Return whether a link's body can rotate.
 
-        It cannot if only prismatic joints connect it to the link `WORLD`.
+        The body cannot rotate if only prismatic joints connect it to the link `WORLD`.
         """
         body = self._by_link.get(link)
         while body is not None and body.joint is not None:
@@ -72,7 +72,7 @@ class Bodies:
         return link.name in self._standing_for_others
 
     def mass(self, body: Body) -> float:
-        """Return the total of the positive masses of a body's links, in kg; it is only computed once."""
+        """Return the sum of the positive masses of a body's links in kg, computed only once."""
         if body not in self._masses:
             inertials = [link.inertial for link in self.members(body)]
             self._masses[body] = sum(
@@ -82,9 +82,9 @@ class Bodies:
 
     @cached_property
     def _standing_for_others(self) -> frozenset[str]:
-        """The links with a mass next to massless links, one of which has a shape.
+        """The names of links with a mass that have massless neighbours with a shape.
 
-        Empty links in between are ignored.
+        Neighbours are connected by fixed joints, possibly through empty links.
         """
         links = self._robot.links if self._robot is not None else {}
         neighbours: dict[str, list[str]] = {name: [] for name in links}

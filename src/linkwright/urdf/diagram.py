@@ -1,4 +1,4 @@
-"""Render Graphviz text as an image."""
+"""The rendering of Graphviz text as an image."""
 
 from __future__ import annotations
 
@@ -20,11 +20,13 @@ IMAGE_ENDINGS = (".pdf", ".svg", ".png")
 
 
 def render(gv_text: str, path: str | Path) -> None:
-    """Render Graphviz text with dot to an image file; the file's extension selects PDF, SVG or PNG.
+    """Render Graphviz text with dot to an image file.
+
+    The extension of the file selects PDF, SVG or PNG.
 
     Raises:
-        LinkwrightError: URDF201, another extension; URDF202, pygraphviz is not usable; URDF203, Graphviz fails or the
-            file cannot be written.
+        LinkwrightError: URDF201 for another extension, URDF202 if pygraphviz is not usable, or URDF203 if Graphviz
+            fails or the file cannot be written.
     """
     path = Path(path)
     ending = path.suffix.lower()
@@ -49,8 +51,7 @@ def render(gv_text: str, path: str | Path) -> None:
     try:
         graph = AGraph(string=gv_text)
         for node in graph.nodes_iter():
-            # The dot command shows the name of a node without a label; when used as a library, Graphviz would show
-            # nothing.
+            # The dot command shows the name of a node without a label, but the Graphviz library would show nothing.
             if not node.attr["label"]:
                 node.attr["label"] = r"\N"
         diagram = graph.draw(format=ending[1:], prog="dot")

@@ -10,8 +10,8 @@ from linkwright.urdf.tree import parent_joints, walk
 def to_gv(robot: Robot) -> str:
     """Return Graphviz text with links as boxes and joints as ellipses.
 
-    Labels contain xyz in metres and rpy in radians. Numbers have six significant digits, as C++ streams print them; the
-    angles are converted back from the quaternion.
+    Labels contain xyz in metres and rpy in radians. Numbers have six significant digits, as C++ streams print them. The
+    angles are converted back from the quaternion, as in urdfdom.
     """
     lines = ["digraph G {", "node [shape=box];", f'"{robot.root}" [label="{robot.root}"];']
     below = [joint for joint, _ in walk(robot)]
@@ -19,7 +19,7 @@ def to_gv(robot: Robot) -> str:
     lines.append("node [shape=ellipse, color=blue, fontcolor=blue];")
     above = parent_joints(robot)
     for joint in below:
-        # For a link with two parents, urdfdom prints the joint that it kept below each of them.
+        # If a link has two parents, urdfdom prints the joint that it kept below each of them.
         kept = above[joint.child]
         x, y, z = kept.origin.xyz
         roll, pitch, yaw = rpy_from_quaternion(quaternion_of(kept.origin))

@@ -13,7 +13,7 @@ def tree_text(robot: Robot) -> str:
     """Return the robot's name and its links as an indented list.
 
     Children are ordered by joint name, with four blanks per level. From level `DEEPEST` on, the indentation no longer
-    grows: in a chain of a hundred thousand links it would fill the memory.
+    grows. Otherwise, the text of a chain of a hundred thousand links would exhaust the memory.
     """
     lines = [
         f"robot name is: {robot.name}",

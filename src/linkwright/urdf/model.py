@@ -1,9 +1,8 @@
 """The robot model: the typed contents of a URDF file.
 
-Units are SI: metres, radians, kilograms, seconds, newtons. Every pose is the pose of a child frame in its parent frame.
-Every part stores the element from which it was read, which knows its position in the file (through xacro, if it was
-used). Sources of the meaning, independent of REPs: the XML specification of the ROS package ``urdf``, and urdfdom's
-interpretation of it.
+Units are SI: metres, radians, kilograms, seconds, newtons. Every pose is the pose of a child frame in its parent
+frame. Every part stores its XML element, which knows its position in the file, also if the file was expanded by
+xacro. The sources are the XML specification of the ROS package ``urdf``, and urdfdom's interpretation of it.
 """
 
 from __future__ import annotations
@@ -24,7 +23,10 @@ JointType = Literal["revolute", "continuous", "prismatic", "fixed", "floating", 
 
 @dataclass(frozen=True, slots=True)
 class Mesh:
-    """A mesh file by its URI (``package://``, ``file://`` or a path), scaled along x, y, z."""
+    """A mesh file by its URI, with scale factors along x, y, z.
+
+    The URI begins with ``package://`` or ``file://``, or is a path.
+    """
 
     filename: str
     scale: Vector3 = (1.0, 1.0, 1.0)
@@ -35,7 +37,11 @@ Geometry = SimpleShape | Mesh
 
 @dataclass(frozen=True, slots=True)
 class Material:
-    """A colour (red, green, blue, alpha, each 0 to 1), a texture URI, or both; both are None in a reference by name."""
+    """A material with a colour, a texture URI, or both.
+
+    The colour is red, green, blue, alpha, each from 0 to 1. Colour and texture are None in a reference to a material by
+    name.
+    """
 
     name: str
     rgba: tuple[float, float, float, float] | None = None
@@ -45,7 +51,10 @@ class Material:
 
 @dataclass(frozen=True, slots=True)
 class Visual:
-    """A shape to draw; `material` follows urdfdom's rules (the first definition in the file wins), or is None."""
+    """A shape to display.
+
+    By urdfdom's rules, `material` is the first definition of its name in the file, or None if there is none.
+    """
 
     geometry: Geometry
     origin: Pose = IDENTITY_POSE
@@ -57,7 +66,7 @@ class Visual:
 
 @dataclass(frozen=True, slots=True)
 class Collision:
-    """A shape for contacts."""
+    """A shape for collision detection."""
 
     geometry: Geometry
     origin: Pose = IDENTITY_POSE
@@ -67,7 +76,11 @@ class Collision:
 
 @dataclass(frozen=True, slots=True)
 class Inertial:
-    """The mass in kg, the pose of the centre of mass in the link frame, and the inertia tensor about it in kg m2."""
+    """The mass properties of a link.
+
+    These are the mass in kg, the pose of the centre of mass in the link frame, and the inertia tensor about the centre
+    of mass in kg m2.
+    """
 
     mass: float
     ixx: float
@@ -81,7 +94,7 @@ class Inertial:
 
     @property
     def is_computable(self) -> bool:
-        """Whether the numbers are small enough for computations; they need not be physically valid."""
+        """Whether the numbers are small enough to avoid overflow; they need not be physically valid."""
         numbers = (self.mass, self.ixx, self.ixy, self.ixz, self.iyy, self.iyz, self.izz)
         return max(map(abs, numbers)) <= _GREATEST_MASS and max(map(abs, self.origin.xyz)) <= FARTHEST
 
@@ -101,7 +114,7 @@ class Link:
 class Limit:
     """Joint limits: lower and upper in rad or m, effort in N m or N, velocity in rad/s or m/s.
 
-    The last three fields belong to URDF 1.2.
+    The acceleration, deceleration and jerk belong to URDF 1.2.
     """
 
     lower: float = 0.0
@@ -115,7 +128,7 @@ class Limit:
 
 @dataclass(frozen=True, slots=True)
 class Mimic:
-    """A mimic relation: position = multiplier * position of `joint` + offset (rad or m)."""
+    """A mimic relation: position = multiplier * position of `joint` + offset (in rad or m)."""
 
     joint: str
     multiplier: float = 1.0
@@ -124,7 +137,7 @@ class Mimic:
 
 @dataclass(frozen=True, slots=True)
 class Safety:
-    """A ``safety_controller``: gains and soft limits (rad or m)."""
+    """A ``safety_controller`` with gains and soft limits (in rad or m)."""
 
     k_velocity: float
     k_position: float = 0.0
@@ -142,7 +155,7 @@ class Dynamics:
 
 @dataclass(frozen=True, slots=True)
 class Calibration:
-    """Reference positions of a joint, in rad or m."""
+    """The reference positions of a joint, in rad or m."""
 
     rising: float | None = None
     falling: float | None = None
@@ -150,7 +163,11 @@ class Calibration:
 
 @dataclass(frozen=True, slots=True)
 class Joint:
-    """A joint: `origin` places the joint frame in the parent link's frame; `axis` is in the joint frame, as written."""
+    """A joint between a parent link and a child link.
+
+    `origin` is the pose of the joint frame in the parent link's frame. `axis` is given in the joint frame, and is not
+    normalised.
+    """
 
     name: str
     type: JointType
@@ -168,12 +185,12 @@ class Joint:
 
 @dataclass(frozen=True, slots=True)
 class Robot:
-    """A complete description. Links, joints and materials are in file order.
+    """A complete description, with links, joints and materials in source order.
 
     Attributes:
-        version: the file's ``version`` attribute as (major, minor); (1, 0) if it is missing.
+        version: the file's ``version`` attribute as (major, minor), or (1, 0) if it is missing.
         root: the name of the only link without a parent joint.
-        extensions: elements that other rooms read: ``gazebo``, ``ros2_control``, ``transmission``, ``sensor``, ...
+        extensions: the elements that other rooms read: ``gazebo``, ``ros2_control``, ``transmission``, ``sensor``, ...
     """
 
     name: str

@@ -1,8 +1,8 @@
 """XML text as urdfdom's parser reads it, which differs from the XML standard.
 
-tinyxml2 preserves tabs and line breaks inside attribute values, where XML converts them to spaces, and urdfdom does not
-accept them between numbers. tinyxml2 also accepts blanks before the XML declaration, and what
-`linkwright.xmltree.tinyxml` lists.
+tinyxml2 preserves tabs and line breaks inside attribute values, whereas XML converts them to spaces. urdfdom does not
+accept tabs and line breaks between numbers. tinyxml2 also accepts blanks before the XML declaration, and the mistakes
+that `linkwright.xmltree.tinyxml` lists.
 """
 
 from __future__ import annotations
@@ -17,19 +17,19 @@ from linkwright.xmltree.positions import attribute_value_range
 
 _READ_ALL_THE_SAME = phrase("urdfdom reads it anyway, but xacro and other XML readers reject the file")
 _LATE_DECLARATION = lazy_pattern(r"\s+<\?xml\s[^>]*\?>")
-# Matches a blank that is followed by a number or the end of the value; in other values blanks do not matter. Each
+# Each pattern matches a blank that a number or the end of the value follows; in other values, blanks do not matter. A
 # pattern starts with a fixed character, which makes the search ten times as fast as one pattern for all three.
 _INSIDE_VALUE = {blank: lazy_pattern(rf"""{blank}[-+0-9eE. ]*["']""") for blank in "\n\t\r"}
 
 
 def parse_as_urdfdom(text: str | bytes, name: str) -> tuple[Document, tuple[Diagnostic, ...]]:
-    """Read a URDF text, preserving the blanks in its attribute values.
+    """Parse a URDF text, preserving the blanks in its attribute values.
 
     Returns:
         The document, and a warning for each kind of construct that XML forbids and urdfdom accepts.
 
     Raises:
-        LinkwrightError: urdfdom does not accept it as XML either (XML###).
+        LinkwrightError: if urdfdom does not accept the text either (XML###).
     """
     if isinstance(text, bytes):
         text = decode(text, name)

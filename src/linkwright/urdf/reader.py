@@ -1,16 +1,14 @@
-"""Read a URDF document into a robot, and report all its mistakes together.
+"""The reader, which converts a URDF document to a robot and reports all mistakes together.
 
 The reader accepts what urdfdom 3.0.1 accepts and, for files of version 1.1 and 1.2, what urdfdom 6.0.0 accepts. Where
-urdfdom stops at the first error, the reader continues.
+urdfdom stops at the first error, the reader continues. Links, their materials, and joints are read by urdfdom's rules.
 
-Links, their materials, and joints are read by urdfdom's rules.
-
-A joint that cannot be read makes urdfdom refuse the whole model; all its mistakes are reported. A part of a link that
-cannot be read does not: the link stays, without that part and without the parts after it in the order inertial,
-visuals, collisions. Linkwright does the same, and reports the error.
+If a joint cannot be read, urdfdom refuses the whole model. If a part of a link cannot be read, urdfdom keeps the
+link, but without this part and without the parts after it, in the order inertial, visuals, collisions. Linkwright
+does the same, and reports all errors.
 
 The first definition of a material name in the file wins. Definitions at robot level take precedence over those in
-links, even over the colour written in the visual itself. A definition in a later link does not apply to an earlier one.
+links, even over the colour in the visual itself. A definition in a later link does not apply to an earlier link.
 """
 
 from __future__ import annotations
@@ -39,7 +37,7 @@ _WITHOUT_AXIS = replace(JOINT, children=tuple(child for child in JOINT.children 
 
 
 def read_link(element: Element, materials: MaterialTable, findings: UrdfReport) -> Link:
-    """Return a link with its readable parts, and add the materials that it defines."""
+    """Return a link with its readable parts, and add the materials that it defines to the table."""
     name = element.attributes.get("name")
     if name is None:
         findings.missing_attribute(element, LINK, LINK.attributes[0], element)
@@ -53,7 +51,10 @@ def read_link(element: Element, materials: MaterialTable, findings: UrdfReport) 
 
 
 def _drop_what_urdfdom_drops(values: dict[str, Any], findings: UrdfReport) -> None:
-    """Keep only the parts before the first unreadable one, and mention the lost parts in its first error."""
+    """Remove the first unreadable part and all parts after it, as urdfdom does.
+
+    The first error of the unreadable part gets a note on the removed parts.
+    """
     element: Element = values["element"]
     inertial = element.first("inertial")
     first_lost: tuple[ElementRule, Element] | None = None
@@ -74,7 +75,7 @@ def _drop_what_urdfdom_drops(values: dict[str, Any], findings: UrdfReport) -> No
 
 
 def _first_error(rule: ElementRule, part: Element, owner: Element, version: Version) -> Diagnostic:
-    """Return the error at which urdfdom stops.
+    """Return the error at which urdfdom stops reading a part of a link.
 
     urdfdom reads the children of a part in the order of the rule.
     """
@@ -99,7 +100,7 @@ def _visual(fields: dict[str, Any], materials: MaterialTable, owner: Element) ->
 
 
 class MaterialTable:
-    """The materials that are known so far, by name, and the names that were not defined."""
+    """The materials defined so far, by name, and the references to undefined ones."""
 
     __slots__ = ("_findings", "_undefined", "known")
 
@@ -109,7 +110,7 @@ class MaterialTable:
         self._undefined: list[tuple[Material, Element]] = []
 
     def define(self, element: Element, robot: Element) -> None:
-        """Read a material at robot level; one without colour and texture is black."""
+        """Add a material at robot level; a material without colour and texture is black."""
         findings = self._findings
         material = read_material(element, robot, findings) or Material("", element=element)
         if material.rgba is None and material.texture is None:
@@ -128,7 +129,10 @@ class MaterialTable:
             self.known[material.name] = material
 
     def resolve(self, own: Material, owner: Element) -> Material | None:
-        """Return the material of a visual that names or defines `own`; None if it is not defined so far."""
+        """Return the material for a visual's own material, or None if it is not yet defined.
+
+        A name that is defined here for the first time is added to the table.
+        """
         defines = own.rgba is not None or own.texture is not None
         if not own.name:
             return own if defines else None
@@ -142,13 +146,13 @@ class MaterialTable:
         return known
 
     def report_undefined(self) -> None:
-        """Report the names that were not defined when they were used."""
+        """Report the references to materials that were not defined at that point."""
         for material, owner in self._undefined:
             element = material.element
             assert element is not None
             color = element.first("color")
             if color is not None and "rgba" in color.attributes:
-                continue  # its colour is malformed, which has been reported
+                continue  # the malformed colour of this material is reported already
             later = self.known.get(material.name)
             if later is not None:
                 hint = phrase("a later link defines it: move that definition to robot level")
@@ -159,15 +163,15 @@ class MaterialTable:
 
 
 def read_material(element: Element, owner: Element, findings: UrdfReport) -> Material | None:
-    """Return a material as it is written, or None if it has no name."""
+    """Return a material as written, without resolving references, or None if it has no name."""
     material: Material = reader_of(MATERIAL, findings.version).read(element, owner, findings)
     return None if material is UNREADABLE else material
 
 
 def read_joint(element: Element, findings: UrdfReport) -> Joint:
-    """Return a joint; if it cannot be read, report this and mark the findings as rejecting the model.
+    """Return a joint; if it cannot be read, report this and mark the model as refused.
 
-    Without the element ``<axis>`` the axis is 1 0 0; for an element without 'xyz' it is 0 0 0, which is odd but as in
+    Without the element ``<axis>``, the axis is 1 0 0. For an element without 'xyz', it is 0 0 0, which is odd but as in
     urdfdom.
     """
     before = findings.error_count
@@ -235,7 +239,7 @@ class Reading:
     Attributes:
         robot: the robot, or None if urdfdom would refuse the model. There may be a robot despite errors: like urdfdom,
             Linkwright keeps a model in which a part of a link is malformed, and drops this part.
-        diagnostics: all errors and warnings, in the order of the text.
+        diagnostics: all errors and warnings, in source order.
     """
 
     robot: Robot | None
@@ -243,7 +247,10 @@ class Reading:
 
 
 def read(document: Document) -> Reading:
-    """Read a URDF document; its content never raises an error."""
+    """Return the robot of a URDF document, and all findings.
+
+    Errors in the content are never raised.
+    """
     findings = UrdfReport()
     robot = _read_robot(document.root, findings)
     return Reading(None if findings.rejected else robot, findings.in_order())
@@ -283,7 +290,7 @@ def _read_robot(root: Element, findings: UrdfReport) -> Robot | None:
 
 
 def _by_name(kind: str, parts: Iterable[PartT], findings: UrdfReport) -> dict[str, PartT]:
-    """Return links or joints by name; if several have the same name, the first one counts."""
+    """Return links or joints by name; of those with the same name, only the first counts."""
     found: dict[str, PartT] = {}
     for part in parts:
         first = found.setdefault(part.name, part)
@@ -355,7 +362,7 @@ def _report_leftover_xacro(root: Element, extensions: list[Element], findings: U
 
 
 def _check_mimics(joints: dict[str, Joint], findings: UrdfReport) -> None:
-    """Report mimic joints without the joint that they follow, which urdfdom does not check."""
+    """Report mimic joints whose followed joint does not exist, which urdfdom does not check."""
     for joint in joints.values():
         if joint.mimic is None:
             continue

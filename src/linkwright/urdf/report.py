@@ -1,4 +1,4 @@
-"""Messages of the reader in the order of the text, about missing, malformed and misplaced parts of URDF."""
+"""The reader's messages about missing, malformed and misplaced parts of URDF."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ from linkwright.xmltree import Element
 
 
 class Findings:
-    """The findings of one reading, and whether they reject the robot.
+    """The findings of one reading, and whether they make urdfdom refuse the robot.
 
     Attributes:
-        version: the URDF version as which the file is read.
+        version: the URDF version of the file, whose rules apply.
         rejected: whether urdfdom would refuse the model.
         count: the number of findings so far.
-        error_count: the number of errors among them.
+        error_count: the number of errors among the findings.
     """
 
     __slots__ = ("_found", "count", "error_count", "rejected", "version")
@@ -77,7 +77,7 @@ class Findings:
         hint: Phrase | None = None,
         notes: Sequence[Note] = (),
     ) -> None:
-        """Report an error in a part that urdfdom drops or misreads although it keeps the model."""
+        """Report an error in a part that urdfdom drops or misreads, although it accepts the model."""
         self._add(Severity.ERROR, code, message, element, attribute, hint, notes)
 
     def warning(
@@ -90,11 +90,11 @@ class Findings:
         hint: Phrase | None = None,
         notes: Sequence[Note] = (),
     ) -> None:
-        """Report something that urdfdom accepts without complaint but that is probably not intended."""
+        """Report a construct that urdfdom silently accepts but that is probably not intended."""
         self._add(Severity.WARNING, code, message, element, attribute, hint, notes)
 
     def duplicate(self, kind: str, name: str, element: Element, first: Element | None) -> None:
-        """Report a second element of the same kind and name."""
+        """Report a second element of the same kind and name; `first` is the first one."""
         notes = (Note(phrase("first defined here"), first.span()),) if first else ()
         hint = phrase("give each {kind} its own name", kind=term(kind))
         self.reject(
@@ -107,18 +107,18 @@ class Findings:
         )
 
     def first_error(self) -> Diagnostic:
-        """Return the first error; there must be one."""
+        """Return the first error, which must exist."""
         return next(found for found in self._found if found.severity is Severity.ERROR)
 
     def annotate(self, finding: Diagnostic, note: Note) -> None:
-        """Add a note to a finding, or to the latest one that is equal to it."""
+        """Add a note to the latest recorded finding that equals a finding."""
         for index in range(len(self._found) - 1, -1, -1):
             if self._found[index] == finding:
                 self._found[index] = finding.with_changes(notes=(*finding.notes, note))
                 return
 
     def in_order(self) -> tuple[Diagnostic, ...]:
-        """Return all findings by position, with files in the order in which they first occurred."""
+        """Return all findings sorted by location, with files in the order of their first findings."""
         files: dict[str, int] = {}
 
         def place(diagnostic: Diagnostic) -> tuple[int, int, int]:
@@ -188,7 +188,10 @@ def owner_name(owner: Element) -> Phrase:
 
 
 class UrdfReport(Findings):
-    """The findings of one reading, with messages for the element reader (`linkwright.schema.reading`)."""
+    """The findings of one reading, as the generated readers report them.
+
+    See `linkwright.schema.reading`.
+    """
 
     __slots__ = ()
 
@@ -208,9 +211,10 @@ class UrdfReport(Findings):
         self.error("URDF120", message, element, hint=hint)
 
     def malformed(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> Any:
-        """Report a malformed attribute.
+        """Report a malformed attribute, and return the value to use instead, or `UNREADABLE`.
 
-        A colour with too few numbers becomes black; other malformed colours are unreadable.
+        A colour with too few numbers becomes black, and a colour with other words becomes None. Other attributes are
+        unreadable.
         """
         name, value = attribute.name, element.attributes[attribute.name]
         fields = {"name": name, "tag": rule.tag, "owner": owner_name(owner), "value": value}
@@ -244,7 +248,7 @@ class UrdfReport(Findings):
         return UNREADABLE
 
     def too_new(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> None:
-        """Report that an attribute is ignored, because a later version of URDF added it."""
+        """Report that an attribute is ignored because a later version of URDF added it."""
         message = phrase(
             "'{name}' in <{tag}> of {owner} is ignored: it needs URDF {version}",
             name=attribute.name,
@@ -260,7 +264,10 @@ class UrdfReport(Findings):
     def missing_child(
         self, element: Element, rule: ElementRule, child: ElementRule, owner: Element, kind: str = ""
     ) -> None:
-        """Report that a required child is missing; `kind` is the type of a joint if only such joints need it."""
+        """Report that a required child is missing.
+
+        `kind` is the type of the joint if only joints of some types need the child.
+        """
         candidates = [child for child in element.elements() if child.tag not in rule.child_rules]
         like = nearest(child.tag, [candidate.tag for candidate in candidates], limit=1)
         misspelt = next((candidate for candidate in candidates if candidate.tag in like), None)
@@ -284,7 +291,7 @@ class UrdfReport(Findings):
         self.error("URDF131", phrase("<geometry> of {owner} is empty", owner=owner_name(owner)), element, hint=hint)
 
     def unknown_choice(self, child: Element, rule: ElementRule, owner: Element) -> None:
-        """Report an element in the place of a shape that is not a shape, or not one in this version."""
+        """Report an element in a geometry that is not a shape, or not a shape of this version."""
         if child.tag in rule.child_rules:
             hint = phrase('write <robot version="1.1" ...>, or build it from a cylinder and two spheres')
             self.error(
@@ -315,7 +322,7 @@ class UrdfReport(Findings):
             text=text,
         )
         self.warning("URDF122", message, color, "rgba", hint=hint)
-        return BLACK  # urdfdom reports nothing, and uses black
+        return BLACK  # urdfdom uses black without a message
 
 
 def _number_hint(rule: ElementRule, attribute: AttributeRule, value: str) -> Phrase | None:
@@ -325,7 +332,7 @@ def _number_hint(rule: ElementRule, attribute: AttributeRule, value: str) -> Phr
 
 
 def _joint_type_hint(written: str) -> Phrase:
-    """Return a hint on how to fix an unknown joint type."""
+    """Return a hint on how to correct an unknown joint type."""
     folded = written.strip().casefold()
     if folded in JOINT_TYPES:
         return phrase("write '{folded}'", folded=folded)
@@ -338,7 +345,7 @@ def _joint_type_hint(written: str) -> Phrase:
 
 
 def _shape_hint(written: str, shapes: tuple[ElementRule, ...]) -> Phrase:
-    """Return a hint on how to fix an unknown shape."""
+    """Return a hint on how to correct an unknown shape."""
     if written.startswith("xacro:"):
         return phrase("xacro did not evaluate this: expand the file with xacro first")
     names = [shape.tag for shape in shapes]

@@ -1,10 +1,10 @@
-"""The language as data: the elements and attributes that urdfdom reads, with type, default, unit, meaning and checks.
+"""URDF as data: the elements and attributes that urdfdom reads, with types and meanings.
 
-The reader, the writer, error hints, hover texts, documentation and linting all use this table. Source: urdfdom 3.0.1
-for URDF 1.0, urdfdom 6.0.0 for 1.1 and 1.2.
+The table also has defaults, units and checks. The reader, the writer, error hints, hover texts, documentation and
+linting all use this table. Sources: urdfdom 3.0.1 for URDF 1.0, urdfdom 6.0.0 for 1.1 and 1.2.
 
-The functions here are rules of urdfdom that the table cannot express. Each function receives a value that was read,
-reports mistakes other than its syntax, and returns the value to use.
+The functions here are rules of urdfdom that the table cannot express. Each function receives a parsed value, reports
+mistakes other than its syntax, and returns the value to use.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ _UNSIGNED = ("effort", "velocity", "acceleration", "deceleration", "jerk")
 
 
 def pose_of(xyz: Vector3, rpy: Vector3, quaternion: Quaternion | None) -> Pose:
-    """Return the pose of an ``<origin>``.
+    """Return the pose of an ``<origin>``; a quaternion takes precedence over `rpy`.
 
     A quaternion is normalised, and a zero quaternion is the identity.
     """
@@ -63,7 +63,7 @@ def pose_of(xyz: Vector3, rpy: Vector3, quaternion: Quaternion | None) -> Pose:
         return Pose(xyz, rpy)
     norm = sqrt(sum(part * part for part in quaternion))
     if abs(norm - 1) < _ROUNDING:
-        norm = 1.0  # a quaternion that was written with unit length keeps its exact value
+        norm = 1.0  # keeps the exact values of a quaternion of unit length
     x, y, z, w = (part / norm for part in quaternion) if norm > 0 else (0.0, 0.0, 0.0, 1.0)
     return Pose(xyz, rpy_from_quaternion((x, y, z, w)), (x, y, z, w))
 
@@ -110,7 +110,7 @@ def check_sizes(geometry: Geometry, shape: Element, owner: Element, findings: Fi
 
 
 def check_end(ends: tuple[str], element: Element, owner: Element, findings: Findings) -> tuple[str]:
-    """Check that the name of a joint's parent or child link is not empty."""
+    """Check that a joint's parent or child link has a name that is not empty."""
     if not ends[0]:
         message = phrase("'link' in <{tag}> of {owner} is empty", tag=element.tag, owner=owner_name(owner))
         findings.error("URDF124", message, element, "link", hint=phrase("give the name of a link"))
@@ -118,7 +118,7 @@ def check_end(ends: tuple[str], element: Element, owner: Element, findings: Find
 
 
 def check_dynamics(dynamics: Dynamics, element: Element, owner: Element, findings: Findings) -> Any:
-    """Check that at least one of the two attributes is set."""
+    """Check that at least one of damping and friction is set."""
     if "damping" in element.attributes or "friction" in element.attributes:
         return dynamics
     message = phrase("<dynamics> of {owner} has neither 'damping' nor 'friction'", owner=owner_name(owner))
@@ -128,9 +128,9 @@ def check_dynamics(dynamics: Dynamics, element: Element, owner: Element, finding
 
 
 def check_limit(limit: Limit, element: Element, owner: Element, findings: Findings) -> Limit:
-    """Check that bounds are ordered and sizes positive, as URDF 1.2 requires.
+    """Check that bounds are ordered and magnitudes positive, as URDF 1.2 requires.
 
-    The deceleration defaults to the acceleration.
+    In the result, a missing deceleration is equal to the acceleration.
     """
     if findings.version < (1, 2):
         return limit
@@ -279,7 +279,7 @@ VISUAL = ElementRule(
         ),
     ),
     many=True,
-    make=dict,  # the link creates the visual once it knows the named material
+    make=dict,  # the link creates the visual after it has found the named material
     located=True,
     field="visuals",
 )

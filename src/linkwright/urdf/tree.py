@@ -1,4 +1,4 @@
-"""The tree that joints form of links: check it while reading, and traverse it afterwards.
+"""The tree of links that the joints form: its validation, and its traversal.
 
 Children are in the order of their joints' names, as in urdfdom's maps.
 """
@@ -19,7 +19,10 @@ _MOST_VISITS = 64
 
 
 def children_of(robot: Robot) -> Mapping[str, tuple[Joint, ...]]:
-    """Return the child joints of every link, ordered by name; empty for a leaf."""
+    """Return the child joints of every link, by link name; empty for a leaf.
+
+    The joints are ordered by name.
+    """
     children: dict[str, list[Joint]] = {name: [] for name in robot.links}
     for _, joint in sorted(robot.joints.items()):
         children[joint.parent].append(joint)
@@ -27,18 +30,18 @@ def children_of(robot: Robot) -> Mapping[str, tuple[Joint, ...]]:
 
 
 def parent_joints(robot: Robot) -> Mapping[str, Joint]:
-    """Return the parent joint of every link except the root.
+    """Return the parent joint of every link except the root, by link name.
 
-    Of several parent joints the last by name counts, as in urdfdom.
+    Of several parent joints, the last one by name counts, as in urdfdom.
     """
     return {joint.child: joint for _, joint in sorted(robot.joints.items())}
 
 
 def walk(robot: Robot) -> Iterator[tuple[Joint, int]]:
-    """Yield the joints below the root, depth first, each with its depth, starting at 1.
+    """Yield the joints below the root in depth-first order, each with its depth, starting at 1.
 
-    Joints below a link with several parents are repeated for each parent, as in urdfdom, but only for up to
-    `_MOST_VISITS` paths to a link, because the number of paths may double with every link.
+    Joints below a link with several parents are repeated for each parent, as in urdfdom. Because the number of paths
+    may double with every link, only up to `_MOST_VISITS` paths to a link are followed.
     """
     children = children_of(robot)
     visits: Counter[str] = Counter()
@@ -54,9 +57,10 @@ def walk(robot: Robot) -> Iterator[tuple[Joint, int]]:
 def find_root(links: Mapping[str, Link], joints: Sequence[Joint], findings: Findings) -> str:
     """Check that the joints form a tree of the links, and return the root's name.
 
-    The name is empty if there is not exactly one root. urdfdom refuses unknown links and any number of roots except
-    one. It overlooks loops away from the root, links with two parents and, at the price of a crash later, loops below
-    the root; Linkwright refuses those.
+    The name is empty unless there is exactly one root. urdfdom refuses unknown links, and any number of roots except
+    one.
+    It does not detect cycles that are not connected to the root, links with two parents, and cycles below the root,
+    which later cause a crash. Linkwright reports all of these as errors, and refuses cycles below the root.
     """
     if not _ends_exist(links, joints, findings):
         return ""
@@ -83,7 +87,7 @@ def _ends_exist(links: Mapping[str, Link], joints: Sequence[Joint], findings: Fi
                 continue
             good = False
             if not name:
-                continue  # missing, which has been reported
+                continue  # the missing link is reported already
             assert joint.element is not None
             end = joint.element.first(tag)
             assert end is not None
@@ -121,7 +125,7 @@ def _report_roots(roots: Sequence[str], links: Mapping[str, Link], findings: Fin
 
 
 def _is_tree(root: str, links: Mapping[str, Link], joints: Sequence[Joint], moved: set[str]) -> bool:
-    """Return whether no link has two parents and all links are connected to the root."""
+    """Return whether each link has at most one parent and is connected to the root."""
     if len(moved) != len(joints):
         return False
     parents = {joint.child: joint.parent for joint in joints}
@@ -142,7 +146,7 @@ def _check_parents(joints: Sequence[Joint], findings: Findings) -> None:
     for joint in joints:
         first = above.setdefault(joint.child, joint)
         if first is joint or first.name == joint.name:
-            continue  # one of two joints with the same name, which has been reported
+            continue  # another joint with the same name is reported already
         assert joint.element is not None
         end = joint.element.first("child")
         assert end is not None
@@ -165,7 +169,7 @@ def _check_reachable(root: str, links: Mapping[str, Link], joints: Sequence[Join
     below: dict[str, list[str]] = {}
     for joint in joints:
         below.setdefault(joint.parent, []).append(joint.child)
-    # Depth first with an explicit stack; a link that occurs twice on the current path closes a loop.
+    # Search depth-first with an explicit stack. A link that occurs twice on the current path closes a cycle.
     seen, path = {root}, {root}
     stack = [(root, iter(below.get(root, ())))]
     while stack:
@@ -191,7 +195,10 @@ def _check_reachable(root: str, links: Mapping[str, Link], joints: Sequence[Join
 
 
 def _loop_from(link: str, joints: Sequence[Joint]) -> list[str]:
-    """Return the loop to which the parent joints of a link lead, from parent to child."""
+    """Return the links of the cycle above a link, from parent to child.
+
+    The first and the last link are the same.
+    """
     parents = {joint.child: joint.parent for joint in joints}
     path = [link]
     while path[-1] in parents and parents[path[-1]] not in path:

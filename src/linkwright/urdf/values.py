@@ -1,7 +1,7 @@
-"""Attribute values as urdfdom reads them: types, numbers and vectors, and hints for malformed ones.
+"""Attribute values as urdfdom reads them, and hints for malformed values.
 
-urdfdom passes an attribute to a C++ stream in the classic locale and requires that all of it is consumed. Therefore
-blanks may precede a number but not follow it; ``1e3``, ``.5``, ``5.`` and ``+1`` are numbers; ``inf``, ``nan``,
+urdfdom reads an attribute with a C++ stream in the classic locale, which must consume the whole text. Therefore,
+blanks may precede a number but not follow it. ``1e3``, ``.5``, ``5.`` and ``+1`` are numbers; ``inf``, ``nan``,
 ``0x10``, ``0,5`` and the empty text are not. A vector is split only at the space character.
 """
 
@@ -23,8 +23,8 @@ _DIGITS = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _NUMBER = re.compile(rf"[ \t\n\v\f\r]*{_DIGITS}").fullmatch
 _PIECE = rf"[\t\n\v\f\r]*({_DIGITS})"
 _VECTOR3 = re.compile(rf" *{_PIECE} +{_PIECE} +{_PIECE} *").fullmatch
-# If a text consists only of these characters, it is a number in Python exactly if it is one in urdfdom. The fastest
-# test for a single, short value is to strip these characters.
+# If a text consists only of these characters, Python and urdfdom agree on whether it is a number. For a single, short
+# value, the fastest test is to strip these characters.
 _PLAIN_SIGNS = "-+.0123456789eE "
 _PLAIN = re.compile(r"[-+.0-9eE ]*").fullmatch
 
@@ -41,15 +41,15 @@ _UNITS = {
 }
 _WITH_UNIT = lazy_pattern(rf"\s*({_DIGITS})\s*(\D+?)\s*")
 
-# Values repeat ("0 0 0", "1"), so caching them saves a third of the reader's time.
+# Values such as "0 0 0" and "1" repeat, so a cache saves a third of the reader's time.
 _REMEMBERED = 4096
 
 
 def number(text: str) -> float:
-    """Parse a number.
+    """Return the number in a text.
 
     Raises:
-        ValueError: the text is not a number, or a number too large for a double.
+        ValueError: if the text is not a number, or if the number is too large for a double.
     """
     if (text.strip(_PLAIN_SIGNS) or text[-1:] == " ") and not _NUMBER(text):
         raise ValueError(text)
@@ -61,10 +61,10 @@ def number(text: str) -> float:
 
 @lru_cache(maxsize=_REMEMBERED)
 def vector3(text: str) -> Vector3:
-    """Parse three numbers separated by spaces.
+    """Return the three numbers in a text, which spaces separate.
 
     Raises:
-        ValueError: the count is not 3, or one of them is not a number.
+        ValueError: if the count is not 3, or if one of the words is not a number.
     """
     if _PLAIN(text):
         x, y, z = map(float, text.split())
@@ -73,22 +73,22 @@ def vector3(text: str) -> Vector3:
         if not match:
             raise ValueError(text)
         x, y, z = map(float, match.groups())
-    if not isfinite(x + y + z) and (isinf(x) or isinf(y) or isinf(z)):  # one call if all values are finite
+    if not isfinite(x + y + z) and (isinf(x) or isinf(y) or isinf(z)):  # a finite sum needs only one test
         raise ValueError(text)
     return x, y, z
 
 
 def numbers(text: str) -> tuple[float, ...]:
-    """Parse any count of numbers separated by spaces.
+    """Return the numbers in a text, which spaces separate; there may be any count of them.
 
     Raises:
-        ValueError: one of them is not a number; its only argument is the invalid text.
+        ValueError: if one of the words is not a number; its only argument is this word.
     """
     return tuple(number(piece) for piece in text.split(" ") if piece)
 
 
 def number_hint(text: str) -> Phrase | None:
-    """Return a hint on how to fix a value that is not a number, or None if this cannot be guessed."""
+    """Return a hint on how to correct a value that is not a number, or None."""
     stripped = text.strip()
     if not stripped:
         return phrase("give a number")
@@ -116,7 +116,7 @@ def number_hint(text: str) -> Phrase | None:
 
 
 def vector_hint(text: str, count: int) -> Phrase | None:
-    """Return a hint on how to fix a value that is not `count` numbers separated by spaces, or None."""
+    """Return a hint on how to correct a value that is not `count` numbers, or None."""
     if "${" in text or "$(" in text:
         return number_hint(text)
     if not text.strip():
@@ -142,7 +142,7 @@ def vector_hint(text: str, count: int) -> Phrase | None:
 def looks_like_degrees(*angles: float) -> bool:
     """Return whether angles that should be in radians are probably in degrees.
 
-    This is the case if one of them is a multiple of 5 whose magnitude is between 10 and 720.
+    This is the case if one of the angles is a multiple of 5 with a magnitude between 10 and 720.
     """
     if max(map(abs, angles)) < 10:
         return False
@@ -152,19 +152,19 @@ def looks_like_degrees(*angles: float) -> bool:
 def looks_like_degree_limits(lower: float, upper: float) -> bool:
     """Return whether the bounds of a joint are probably in degrees.
 
-    In addition to `looks_like_degrees`, one bound must be a typical joint angle in degrees: limits of 10, 50 or 100 rad
-    are written for joints without real limits, or for a joint with a gear.
+    In addition to `looks_like_degrees`, one bound must be a typical joint angle in degrees, because limits of 10, 50 or
+    100 rad are often written for joints without real limits, or with a gear.
     """
     return looks_like_degrees(lower, upper) and any(30 <= abs(end) <= 360 and end % 15 == 0 for end in (lower, upper))
 
 
 def degrees_hint(*angles: float) -> Phrase:
-    """Return a hint with angles converted from degrees to radians."""
+    """Return a hint with some angles converted from degrees to radians."""
     return phrase("angles are in radians: '{angles}'", angles=" ".join(f"{radians(angle):.6g}" for angle in angles))
 
 
 def plain(value: float) -> str:
-    """Return a number in the shortest form without loss that the reader accepts."""
+    """Return a number as the shortest text that the reader converts back without loss."""
     return repr(value).removesuffix(".0")
 
 

@@ -13,9 +13,9 @@ _Path = tuple[str, ...]
 
 
 def meanings(name: str) -> list[Phrase]:
-    """Return the meanings of a name or path as Markdown; empty if URDF has no such element or attribute.
+    """Return the meanings of a name or path in Markdown; empty if URDF does not define it.
 
-    A path is written from outer to inner elements, may start at any element, and may end with an attribute:
+    A path leads from outer to inner elements, may start at any element, and may end with an attribute.
     ``joint.limit.effort`` and ``limit.effort`` are the same, and so are ``limit/effort`` and ``<limit> effort``.
     """
     asked = tuple(re.findall(r"[\w-]+", name.casefold()))
@@ -35,7 +35,7 @@ def meanings(name: str) -> list[Phrase]:
 
 
 def names() -> list[str]:
-    """Return the names of all elements and attributes, without duplicates."""
+    """Return the names of all URDF elements and attributes, without duplicates."""
     found = [
         name
         for path, rule in _elements(ROBOT, ())
@@ -56,5 +56,5 @@ def _ends_with(path: _Path, asked: _Path) -> bool:
 
 
 def _headed(paths: list[_Path]) -> str:
-    """Return a heading that lists the paths relative to ``<robot>``."""
+    """Return a Markdown heading that lists paths, which are relative to ``<robot>``."""
     return "# " + ", ".join(f"`{'.'.join(path[1:] or path)}`" for path in paths)

@@ -1,4 +1,4 @@
-"""Write a robot as URDF, in the robot's order, so that reading it back gives an equal robot."""
+"""The writer of robots as URDF; reading the text again gives an equal robot."""
 
 from __future__ import annotations
 
@@ -10,10 +10,11 @@ from linkwright.xmltree.writer import tidied
 
 
 def save(robot: Robot) -> str:
-    """Return the robot as URDF text; defaults are omitted, numbers are as short as possible without loss.
+    """Return the robot as URDF text.
 
-    Materials are written at the robot level. Other elements (``gazebo``, ``ros2_control``, ...) follow at the end,
-    unchanged.
+    Defaults are omitted, and numbers are as short as possible without loss. Materials are written at the robot level.
+    Other elements (``gazebo``, ``ros2_control``, ...) follow unchanged at the
+    end.
     """
     root = write_element(ROBOT, robot)
     root.children += map(tidied, robot.extensions)

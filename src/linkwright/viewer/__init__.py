@@ -1,4 +1,4 @@
-"""The viewer, a node of the graph whose window is a browser page, and its views of recordings."""
+"""The viewer, a node of the graph whose window is a browser page, and views of recordings."""
 
 from typing import TYPE_CHECKING
 

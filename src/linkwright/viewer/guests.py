@@ -1,6 +1,6 @@
-"""Recordings that pages uploaded or made: each has its own graph and viewer, on the host viewer's server.
+"""Recordings that pages uploaded or made, each with its own graph and viewer.
 
-They reach neither the graph of the host viewer nor the network.
+Their pages are served by the host viewer's server, but they reach neither its graph nor the network.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class GuestRecordings:
     """Shows recordings to the pages that uploaded or made them.
 
     Args:
-        host: the viewer whose server shows them.
+        host: the viewer whose server serves the pages.
     """
 
     def __init__(self, host: Viewer) -> None:
@@ -53,18 +53,18 @@ class GuestRecordings:
         self._closing: set[asyncio.Task[None]] = set()
 
     async def open(self, path: Path, scratch: TemporaryDirectory[str] | None) -> str:
-        """Show a recording, and return its name for pages.
+        """Show a recording, and return the key by which pages name it.
 
-        It is shown until a minute after its last page was closed.
+        The recording is shown until a minute after its last page was closed.
 
         Args:
-            path: the path of its file or folder.
-            scratch: its temporary folder, which is removed afterwards; None for a permanent file.
+            path: the path of the recording's file or folder.
+            scratch: the temporary folder of the recording, which is removed afterwards; None for a permanent file.
 
         Raises:
             LinkwrightError: BAG101, BAG102, BAG107, see `BagReader`; BAG111, the limit of recordings is reached.
         """
-        from linkwright.bag import BagReader, Playback  # imported here because few viewers show uploaded recordings
+        from linkwright.bag import BagReader, Playback  # few viewers show other recordings
         from linkwright.viewer.recorded_robot import published, robot_of
         from linkwright.viewer.recording_config import recording_config
 
@@ -106,7 +106,7 @@ class GuestRecordings:
         return key
 
     def audience(self, key: str) -> Audience | None:
-        """Return the pages that show the recording of a name; None if there is no such recording."""
+        """Return the pages that show the recording with a key, or None if there is no such recording."""
         guest = self._guests.get(key)
         return None if guest is None else guest.viewer.audience
 
@@ -118,7 +118,7 @@ class GuestRecordings:
         await asyncio.gather(*(_end(guest) for guest in guests.values()), *self._closing)
 
     async def _make_room(self) -> None:
-        """At the limit, close the recording that has been without pages longest."""
+        """If the limit is reached, close the recording that has had no pages for the longest time."""
         if len(self._guests) < _MOST:
             return
         until = asyncio.get_running_loop().time() - _LEFT
@@ -132,7 +132,7 @@ class GuestRecordings:
             self._looking = asyncio.get_running_loop().call_later(_LOOK, self._look)
 
     def _look(self) -> None:
-        """Close the recordings that have no pages."""
+        """Close the recordings whose last page was closed a while ago."""
         self._looking = None
         loop = asyncio.get_running_loop()
         for key, guest in list(self._guests.items()):

@@ -1,4 +1,4 @@
-"""Take a snapshot of a model file without a browser."""
+"""Takes a snapshot of a model file without a browser."""
 
 from __future__ import annotations
 
@@ -33,9 +33,9 @@ def snapshot_of_model(
 
     Args:
         text: the description.
-        robot: the robot of the text.
-        library: has the source positions of its elements.
-        finder: finds its meshes.
+        robot: the robot that was read from the text.
+        library: has the source positions of the description's elements.
+        finder: finds the robot's meshes.
         old: the description to compare with; None for no comparison.
     """
     return asyncio.run(_snapshot(text, robot, library, finder, old))
@@ -47,7 +47,7 @@ class OldDescription:
 
     Attributes:
         pair: the older and the newer description.
-        text: the text that identifies the older one in the library.
+        text: the text that identifies the older description in the library.
     """
 
     pair: Pair

@@ -1,7 +1,7 @@
-"""Show a robot in a notebook cell, with a slider for each joint.
+"""Shows a robot in a notebook cell, with a slider for each joint.
 
-The cell contains the page that ``linkwright export`` writes, in an iframe. It needs no server and no network, so it
-also works in saved notebooks, and wherever notebooks run: Jupyter, VS Code, marimo (decision 0112).
+The cell contains, in an iframe, the page that ``linkwright export`` writes. The page needs no server and no network, so
+it also works in saved notebooks, and wherever notebooks run: Jupyter, VS Code, marimo (decision 0112).
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class RobotCell:
 
     Attributes:
         name: the robot's name.
-        page: the HTML document that shows it.
+        page: the HTML document that shows the robot.
         height: the height of the cell, in pixels.
         diagnostics: the findings about the description.
     """
@@ -54,12 +54,12 @@ def show(
     packages: Packages = None,
     height: int = 480,
 ) -> RobotCell:
-    """Show a robot in a cell of a notebook, as the value of its last line.
+    """Return a robot as the output of a notebook cell; call this in the last line of the cell.
 
     Args:
-        robot: a path to a URDF or xacro file, a text, or a `Robot` that was loaded.
+        robot: the path of a URDF or xacro file, a text, or a `Robot` that was loaded.
         arguments: values for the file's ``<xacro:arg>``.
-        packages: where packages are: package name -> share folder, or a finder.
+        packages: the locations of packages: package name -> share folder, or a finder.
         height: the height of the cell, in pixels.
 
     Raises:
@@ -74,7 +74,7 @@ def show(
     if shown is None or not shown.root:
         raise LinkwrightError(*description.diagnostics) if description.diagnostics else no_robot()
     text = library.store(description)
-    with ThreadPoolExecutor(1) as thread:  # a notebook's own thread runs an event loop already
+    with ThreadPoolExecutor(1) as thread:  # an event loop already runs in the notebook's own thread
         snapshot = thread.submit(snapshot_of_model, text, shown, library, finder).result()
     page = html_of(snapshot).decode("utf-8")
     return RobotCell(shown.name, page, height, (*description.diagnostics, *snapshot.problems))

@@ -1,4 +1,4 @@
-"""The robot of a recording without transforms; its link poses are computed from recorded joint states."""
+"""The robot of a recording without transforms, whose link poses are computed from joint states."""
 
 from __future__ import annotations
 
@@ -26,9 +26,10 @@ def description_topic(bag: BagReader) -> str | None:
 
 
 def namespace_of_transforms(bag: BagReader) -> str:
-    """Return the namespace of the first robot, such as ``/robot1``; empty unless all transforms have one.
+    """Return the namespace of a robot's transforms, such as ``/robot1``.
 
-    If there are several robots, the first with a description is chosen.
+    The namespace is empty unless all transforms have one. If there are several robots, the first one with a description
+    is selected.
     """
     names = [topic.name for topic in bag.topics if topic.count]
     if TRANSFORMS in names or STATIC_TRANSFORMS in names:
@@ -45,11 +46,11 @@ def lacks_transforms(bag: BagReader) -> bool:
 
 
 def robot_of(bag: BagReader, library: DescriptionLibrary) -> Robot | None:
-    """Return the robot of a recording; None if it has no readable robot.
+    """Return the robot of a recording, or None if it has no description that can be read.
 
     Args:
         bag: the recording.
-        library: reads its description.
+        library: reads the robot's description.
     """
     topic = description_topic(bag)
     if topic is None:
@@ -62,9 +63,10 @@ def robot_of(bag: BagReader, library: DescriptionLibrary) -> Robot | None:
 
 
 class PlacedRobot:
-    """Publishes a recording, and its robot's transforms computed from joint states, as robot_state_publisher would.
+    """Publishes a recording, and transforms computed from its joint states.
 
-    Joints without a message so far are at zero, or in the middle of their limits if those exclude zero.
+    The transforms are those that robot_state_publisher would publish. Joints without a message so far are at zero, or
+    in the middle of their limits if the limits exclude zero.
 
     Args:
         recording: publishes the recorded messages.
@@ -86,9 +88,9 @@ class PlacedRobot:
         node.get_logger().info("The recording has no /tf: the robot's transforms are computed from its joint states")
 
     def wanted(self) -> frozenset[str]:
-        """Return the topics that have subscriptions.
+        """Return the topics of the recording that are needed because they have subscriptions.
 
-        The sources of the robot's transforms are included if the transforms have subscriptions.
+        If the transforms have subscriptions, the topics from which they are computed are included.
         """
         topics = self._recording.wanted()
         if self._moving.get_subscription_count():
@@ -100,7 +102,7 @@ class PlacedRobot:
         self._recording.publish_time(stamp_ns)
 
     def publish(self, topic: str, stamp_ns: int, data: bytes) -> None:
-        """Publish a message, and the transforms that it changes."""
+        """Publish a message, and the transforms that the message changes."""
         self._recording.publish(topic, stamp_ns, data)
         if stamp_ns < self._shown_ns:
             self._positions = dict(self._zeros)
@@ -121,12 +123,12 @@ class PlacedRobot:
 
 
 def published(bag: BagReader, node: Node, robot: Robot | None) -> PublishedRecording | PlacedRobot:
-    """Return the publisher for a recording that has its own graph.
+    """Return the object that publishes a recording in a graph of its own.
 
     Args:
         bag: the recording.
         node: the node that publishes.
-        robot: the robot that `robot_of` returned.
+        robot: the robot that `robot_of` returned, or None.
     """
     namespace = namespace_of_transforms(bag)
     recording = PublishedRecording(node, bag, namespace)
@@ -138,5 +140,5 @@ def published(bag: BagReader, node: Node, robot: Robot | None) -> PublishedRecor
 def _zeros(robot: Robot) -> dict[str, float]:
     try:
         return {joint.name: joint.zero for joint in layout_of(robot, JointSettings()).free}
-    except LinkwrightError:  # joints mimic one another in a cycle: only joints with messages have a position
+    except LinkwrightError:  # joints mimic one another in a cycle, so their positions are not computed
         return {}

@@ -1,4 +1,4 @@
-"""Create the initial configuration for a recording."""
+"""Creates the initial configuration for a recording."""
 
 from __future__ import annotations
 
@@ -44,12 +44,12 @@ _DISPLAYS = (
 def recording_config(bag: BagReader, robot: Robot | None = None) -> RvizConfig:
     """Return a recording's initial configuration: its robot, and displays for topics of common types.
 
-    Transforms are shown only if there is no robot, which their axes would cover. A recording of a simulation shows its
-    world in the world frame, and its robot model is disabled because the world contains the robot.
+    TF is shown only if there is no robot, which the axes of TF would cover. A recording of a simulation shows the
+    simulated world in the world frame; the robot model is disabled, because the world contains the robot.
 
     Args:
         bag: the recording.
-        robot: the recorded robot, if it can be read.
+        robot: the recorded robot, or None if it cannot be read.
     """
     described, namespace = description_topic(bag), namespace_of_transforms(bag)
     root, children = _tree(bag, namespace)
@@ -78,15 +78,15 @@ def recording_config(bag: BagReader, robot: Robot | None = None) -> RvizConfig:
     for message, kind, most in _DISPLAYS:
         for topic in (topic for topic in bag.topics if topic.type_name == message and topic.count):
             if world and topic.name.startswith(RAYS_TOPIC):
-                continue  # the World display draws them
-            own = not namespace or topic.name.startswith(f"{namespace}/")  # other robots use the same frame names
+                continue  # the World display shows them
+            own = not namespace or topic.name.startswith(f"{namespace}/")  # other robots have frames of the same names
             _add(config, kind, topic, checked=own and shown[kind] < most)
             shown[kind] += own
     return config
 
 
 def _has_world(bag: BagReader) -> bool:
-    """Return whether the recording contains a simulated world and the poses in it."""
+    """Return whether the recording contains a simulated world and the poses of its links."""
     there = {topic.name for topic in bag.topics if topic.count}
     return {DESCRIPTION_TOPIC, POSES_TOPIC} <= there
 

@@ -43,21 +43,22 @@ _FIXED_FRAME = "fixed_frame"
 class Viewer:
     """Shows in a browser what RViz would show of a graph.
 
-    It must be created inside a running asyncio loop. Pages' edits are in `config`; the pages, or `config.save`, save
-    them.
+    A viewer must be created while an asyncio loop is running. The edits of pages are in `config`; they are saved by the
+    pages, or by `config.save`.
 
     Args:
-        graph: the graph in which its node is created.
+        graph: the graph in which the viewer's node is created.
         library: reads descriptions, each once for the whole process.
         finder: finds packages and the meshes in them.
         config: displays, options and view.
-        host: the address to listen on; any but this machine's loopback address admits others who know the token.
-        port: 0 for any; None for 7448 or the next free one.
+        host: the address to listen on; any address except loopback admits other machines that know the token.
+        port: 0 for any port; None for 7448 or the next free one.
         server: the server, which may already serve the page; None for one at `host` and `port`.
         title: the title of the page.
         options: the node's name, remappings, parameters and ROS arguments.
-        history: the bytes of received messages that are stored, for pages to show the last minutes; 0 for none.
-        beside: another viewer, whose server also serves this one's pages; None for a server of its own.
+        history: the maximum number of bytes of received messages that are stored, for pages to show the last minutes; 0
+            to store none.
+        beside: another viewer, whose server also serves this viewer's pages; None for a server of its own.
 
     Attributes:
         guests: shows the recordings that pages upload to this viewer; None if it accepts none.
@@ -97,7 +98,7 @@ class Viewer:
         self._receivers: dict[str, Callable[[Page, Any], object]] = {}
         self._audience = Audience(self._opening, self._receivers, self._page_closed, self._node.get_logger())
         shared: dict[str, Any] = {"meshes": self._server.meshes, "downloads": self._server.downloads}
-        if beside is not None:  # share the files, and the IDs that must be unique on one server
+        if beside is not None:  # share the files, and the IDs that must be unique on a server
             served = beside.context
             shared = {"meshes": served.meshes, "downloads": served.downloads, "display_ids": served.display_ids}
         self.context: ViewerContext = ViewerContext(
@@ -124,7 +125,7 @@ class Viewer:
         """Subscribe to topics, and serve pages.
 
         Raises:
-            LinkwrightError: VIEW101 to VIEW103, it cannot listen at the address.
+            LinkwrightError: VIEW101 to VIEW103, the server cannot listen at the address.
         """
         try:
             if self._beside is None:
@@ -137,7 +138,7 @@ class Viewer:
                 feature.start()
             if self._beside is None:
                 self._server.show(self._audience, self.guests)
-        except BaseException:  # also when cancelled: the caller does not have this viewer yet, so it cannot close it
+        except BaseException:  # including cancellation: the caller cannot close this viewer
             self._node.destroy_node()
             await self._server.close()
             raise
@@ -154,7 +155,7 @@ class Viewer:
     async def close(self) -> None:
         """Close the connections to pages, destroy the node, and stop listening."""
         self._server.leave_token(pages_wait=len(self._audience) > 0)
-        async with AsyncExitStack() as stack:  # run all of these even if one fails
+        async with AsyncExitStack() as stack:  # each step is carried out even if another one fails
             stack.callback(self._node.destroy_node)
             stack.callback(self.context.published.close)
             if self._beside is not None:
@@ -204,7 +205,7 @@ class Viewer:
     # --- what the rest of the program shows --------------------------------------------------------------------
 
     def attach_joint_panel(self, panel: JointPanel | None) -> None:
-        """Show sliders for the joints of a panel; None removes them."""
+        """Show the sliders of a node's panel that moves joints; None removes the sliders."""
         self.add_feature(JointsFeature).attach(panel)
 
     def attach_recording(self, playback: Playback, bag: BagReader) -> None:
@@ -229,13 +230,13 @@ class Viewer:
         return self.add_feature(TimelineFeature)
 
     def add_feature(self, cls: type[F], receives: Iterable[str] = ()) -> F:
-        """Return the feature of a class, and create it if it does not exist yet.
+        """Return the feature of a class, which is created if it does not exist yet.
 
-        From then on it receives all events.
+        The feature receives all events from then on.
 
         Args:
             cls: the class of the feature.
-            receives: addresses of messages that it handles in addition to those that its class names.
+            receives: addresses of messages that the feature handles in addition to those that its class names.
         """
         found = next((feature for feature in self._features if type(feature) is cls), None)
         if found is None:
@@ -250,7 +251,7 @@ class Viewer:
         self._receivers.update((message, feature.receive) for message in (*feature.receives, *receives))
 
     def show_diagnostics(self, diagnostics: Sequence[Diagnostic]) -> None:
-        """Show the findings on the description; an empty list clears them."""
+        """Show new findings on the description instead of the current ones; the list may be empty."""
         for feature in self._features:
             feature.diagnostics_changed(diagnostics)
 
@@ -259,11 +260,14 @@ class Viewer:
     def _opening(self, page: Page) -> list[Payload]:
         manager = self.managers.enter(page)
         messages, frames = self.opening_messages(manager)
-        manager.pages.add(page)  # add it only now, so that later messages follow all of these
+        manager.pages.add(page)  # messages that are published later must follow these
         return [*(encode(message, page.language) for message in messages), *frames]
 
     def opening_messages(self, manager: VisualizationManager) -> tuple[list[ServerMessage], list[Payload]]:
-        """Return the messages (frame table last) and binary frames for a page that opens a configuration."""
+        """Return the messages and binary frames for a page that opens a configuration.
+
+        The frame table is the last message.
+        """
         messages: list[ServerMessage] = [Hello(PROTOCOL_VERSION, __version__, self._title, self._run)]
         shown, table, frames = manager.opening()
         messages += self._openings(before_displays=True)
@@ -273,7 +277,7 @@ class Viewer:
 
     def _openings(self, *, before_displays: bool) -> list[ServerMessage]:
         messages: list[ServerMessage] = []
-        for feature in self._features:  # `opening` may add further features to this list, which the loop reaches too
+        for feature in self._features:  # `opening` may append features, which this loop also reaches
             if feature.BEFORE_DISPLAYS is before_displays:
                 messages += feature.opening()
         return messages
@@ -305,7 +309,7 @@ class Viewer:
             feature.manager_closed(manager)
 
     def fixed_frame_changed(self, manager: VisualizationManager) -> None:
-        """Handle a new Fixed Frame; the shared configuration's Fixed Frame is also a parameter of the node."""
+        """Set the node's parameter for the Fixed Frame to that of the shared configuration."""
         frame = manager.fixed_frame
         if manager is self.manager and self._node.get_parameter(_FIXED_FRAME).value != frame:
             self._node.set_parameters([Parameter(_FIXED_FRAME, value=frame)])

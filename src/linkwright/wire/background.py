@@ -1,4 +1,4 @@
-"""The base class of transports: an engine, created in the background, mirrors the graph of this process."""
+"""The base class of transports, which mirror the graph of this process in the background."""
 
 from __future__ import annotations
 
@@ -37,26 +37,26 @@ _CLOSED_WITHIN = 0.05
 
 
 class DepartureJudge(Protocol):
-    """Judges how remote publishers left."""
+    """Decides whether a remote publisher that disappeared was lost or left in order."""
 
     def watch(self, lost: Callable[[EndpointInfo], None]) -> None:
         """Register a callback for lost publishers."""
 
 
 class BackgroundTransport(ABC):
-    """Connects the graph of this process to the network (`linkwright.graph.endpoints.bus.Transport`).
+    """Connects the graph of this process to the network; a transport (`graph.endpoints.bus`).
 
-    Separate threads do the work. No method blocks unless its docstring says that it does, and these threads never run a
-    user's callback. In a forked process, the transport neither sends nor receives anything.
+    Separate threads do the work, and never run a user's callback. No method blocks unless its docstring states that it
+    does. In a forked process, the transport neither sends nor receives anything.
 
     Args:
         domain_id: the ROS domain.
         outside: the tables of remote nodes and endpoints.
-        departures: judges how remote publishers left.
+        departures: decides whether remote publishers that disappeared were lost.
         logger: logs problems.
         only_looks: whether the transport only discovers remote nodes and endpoints. The nodes and endpoints of this
             graph are then not announced, which saves creating them on the network.
-        must_join: whether the caller of `join` raises `problem` because it needs the network; the problem is then not
+        must_join: whether the caller of `join` needs the network, and raises `problem` itself. The problem is then not
             logged.
     """
 
@@ -92,7 +92,7 @@ class BackgroundTransport(ABC):
 
     @abstractmethod
     def _make_engine(self) -> Engine:
-        """Join the domain; runs in a separate thread.
+        """Join the domain, and return the engine. Runs in a separate thread.
 
         Raises:
             LinkwrightError: the domain cannot be joined.
@@ -103,7 +103,7 @@ class BackgroundTransport(ABC):
         """Return whether discovery counts as complete.
 
         Args:
-            quiet: seconds since the last change of the remote graph, or since joining.
+            quiet: the seconds since the last change of the remote graph, or since joining if that is later.
         """
 
     @property
@@ -111,7 +111,7 @@ class BackgroundTransport(ABC):
         """Whether joining waits for other processes, because the settings require them."""
         return False
 
-    # --- for the code that joined ------------------------------------------------------------------------------------
+    # --- called by the code that joined ------------------------------------------------------------------------------
 
     def wait_until_ready(self, timeout: float | None = None) -> bool:
         """Block until the domain is joined and every endpoint requested so far is created.
@@ -120,7 +120,7 @@ class BackgroundTransport(ABC):
             timeout: the longest wait, in seconds; None for no limit.
 
         Returns:
-            Whether the transport is ready; False immediately if the domain cannot be joined or was left.
+            Whether the transport is ready. If the domain cannot be joined or was left, False is returned immediately.
         """
         deadline = None if timeout is None else time.monotonic() + timeout
         while not self._decided.wait(_CLOSED_WITHIN) and not self._closed:
@@ -136,7 +136,9 @@ class BackgroundTransport(ABC):
         return done.is_set()
 
     def wait_for_discovery(self, timeout: float = 5.0) -> bool:
-        """Block until discovery has settled: every process has announced itself, and there is nothing new.
+        """Block until discovery has settled.
+
+        Discovery has settled when every process has announced itself and nothing has changed for a while.
 
         Args:
             timeout: the longest wait, in seconds.
@@ -154,7 +156,7 @@ class BackgroundTransport(ABC):
             time.sleep(_LOOK_AGAIN)
         return False
 
-    # --- for the graph -----------------------------------------------------------------------------------------------
+    # --- called by the graph -----------------------------------------------------------------------------------------
 
     def open_node(self, node: NodeIdentity) -> None:
         """Announce a node."""
@@ -171,7 +173,10 @@ class BackgroundTransport(ABC):
         self._mirror(lambda engine: engine.open_publisher(publisher))
 
     def close_publisher(self, publisher: Publisher[Any]) -> None:
-        """Stop mirroring a publisher once its reliable messages are acknowledged, or no reader is left."""
+        """Stop mirroring a publisher once its reliable messages are acknowledged.
+
+        If no reader is left to acknowledge the messages, mirroring stops, too.
+        """
         self._mirror(lambda engine: engine.close_publisher(publisher))
 
     def open_subscription(self, subscription: Subscription[Any]) -> None:
@@ -207,7 +212,7 @@ class BackgroundTransport(ABC):
         self._mirror(lambda engine: engine.close_endpoint(presence))
 
     def look_around(self) -> None:  # noqa: B027 - nothing is to be done where all is discovered anyhow
-        """Start discovery for the next query, if discovery does not run continuously."""
+        """Start discovery for the next query, unless discovery runs continuously."""
 
     def remote_nodes(self) -> Sequence[NodeIdentity]:
         """Return the nodes of other processes that have been discovered so far."""
@@ -218,26 +223,32 @@ class BackgroundTransport(ABC):
         return self._outside.endpoints()
 
     def watch(self, changed: Callable[[], None]) -> None:
-        """Register a callback for changes of remote nodes and endpoints; it is called from any thread."""
+        """Register a callback for changes of remote nodes and endpoints.
+
+        The callback may be called from any thread.
+        """
         self._outside.watch(partial(run_logged, self._logger, "a callback for changes outside", changed))
 
     def watch_lost(self, lost: Callable[[EndpointInfo], None]) -> None:
-        """Register a callback for each remote publisher that is lost; it is called from any thread."""
+        """Register a callback for lost remote publishers.
+
+        The callback may be called from any thread.
+        """
 
         def notify(publisher: EndpointInfo) -> None:
             run_logged(self._logger, "a callback for publishers that are lost", partial(lost, publisher))
 
         self._departed.watch(notify)
-        self._do(lambda _: None)  # wakes the engine, which checks the processes from now on
+        self._do(lambda _: None)  # wakes the engine, which monitors processes from now on
 
     def close(self) -> None:
-        """Leave the domain once reliable messages are acknowledged, at the latest after a second."""
+        """Leave the domain once reliable messages are acknowledged, after a second at the latest."""
         if self._closed:
             return
         self._closed = True
         self._given_up.set()
         _open_transports.discard(self)
-        if self._starter.ident is not None:  # Ctrl-C may have arrived before the thread was started
+        if self._starter.ident is not None:  # Ctrl-C may have interrupted `__init__` before the thread was started
             self._end_joining()
         with self._joining:
             self._has_left = True
@@ -252,7 +263,7 @@ class BackgroundTransport(ABC):
         until = time.monotonic() + _JOINED_WITHIN
         while self._starter.is_alive() and time.monotonic() < until:
             self._starter.join(_CLOSED_WITHIN)
-            if self.waits:  # it may be in a call that waits for other processes and cannot be interrupted
+            if self.waits:  # The thread may be in a call that waits for other processes and cannot be interrupted.
                 break
 
     def abandon(self) -> None:
@@ -268,7 +279,7 @@ class BackgroundTransport(ABC):
             self._do(work)
 
     def _do(self, work: Callable[[Engine], None]) -> None:
-        """Queue work for the engine's thread."""
+        """Queue a call with the engine, which its thread makes once the domain is joined."""
         if self._closed or self.problem is not None:
             return
         self._work.append(work)
@@ -285,7 +296,7 @@ class BackgroundTransport(ABC):
                     self._joined_at = time.monotonic()
                     engine.start()
                     engine.wake()
-            if self._has_left:  # `close` no longer waits for this thread
+            if self._has_left:  # `close` does not wait for this thread
                 engine.close()
         except LinkwrightError as error:
             self.problem = error
@@ -320,13 +331,13 @@ if hasattr(os, "register_at_fork"):
 
 
 def log_join_failure(logger: Logger, error: LinkwrightError) -> None:
-    """Log why a domain cannot be joined."""
+    """Log why the domain could not be joined, and that the process runs without the network."""
     findings = "\n".join(render(diagnostic) for diagnostic in error.diagnostics)
     logger.error(f"{findings}\nThis process continues by itself: other processes do not see its nodes.")
 
 
 def log_alone(logger: Logger, reason: Phrase) -> None:
-    """Log that a process has no transport."""
+    """Log a warning that the process has no transport, with the reason."""
     logger.warning(f"This process does not communicate with other processes: {reason}. Communication inside it works.")
 
 
@@ -334,7 +345,7 @@ AnyTransport = TypeVar("AnyTransport", bound=BackgroundTransport)
 
 
 class TransportOptions(TypedDict, total=False):
-    """The options of a transport."""
+    """The options with which a transport is created."""
 
     only_looks: bool
     """Whether the graph sees other processes and is not seen by them."""
@@ -344,7 +355,7 @@ class TransportOptions(TypedDict, total=False):
 
 
 class JoinOptions(TransportOptions, total=False):
-    """The options for joining a graph to others."""
+    """The options with which a graph is joined to others."""
 
     domain_id: int | None
     """Takes the place of ROS_DOMAIN_ID."""
@@ -361,11 +372,11 @@ def join_with(
     why_not: Callable[[Mapping[str, str] | None], Phrase],
     options: JoinOptions,
 ) -> AnyTransport | None:
-    """Attach a transport to a graph; without a transport, the graph continues without the network.
+    """Attach a transport to a graph, and return it; None if the graph stays without the network.
 
     Args:
         graph: the graph.
-        name: the logger that reports why there is no transport.
+        name: the name of the logger that reports why there is no transport.
         read_settings: reads the settings from an environment and a domain; may raise LinkwrightError.
         make: creates the transport from the settings; may raise LinkwrightError.
         why_not: returns the reason why an environment has no transport; empty if it has one.

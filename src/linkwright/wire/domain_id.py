@@ -1,4 +1,4 @@
-"""Read ROS_DOMAIN_ID, the domain that a process is in."""
+"""Reads ROS_DOMAIN_ID, the domain of this process."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ MAX_DOMAIN_ID = 232
 
 
 def read_domain_id(variables: Mapping[str, str], domain_id: int | None = None) -> int:
-    """Return the domain given by environment variables.
+    """Return the domain that environment variables specify.
 
     Args:
         variables: the environment variables.
-        domain_id: takes precedence over ROS_DOMAIN_ID.
+        domain_id: the domain, which takes precedence over ROS_DOMAIN_ID; None for ROS_DOMAIN_ID.
 
     Raises:
         LinkwrightError: DDS101, the value is not a valid domain.

@@ -1,4 +1,4 @@
-"""The base class of the transports' engines: any thread requests work, and one thread does it in order."""
+"""The base class of transport engines, whose single thread serves requests of any thread."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Work: TypeAlias = "deque[Callable[[Engine], None]]"
 
 
 class Engine(ABC):
-    """Creates, feeds and deletes the mirrors of this process's endpoints, in separate threads.
+    """Creates, serves and deletes the mirrors of this process's endpoints, in separate threads.
 
     Args:
         work: the queue of requests; other threads append to it and call `wake`.
@@ -44,15 +44,15 @@ class Engine(ABC):
 
     @abstractmethod
     def wake(self) -> None:
-        """Have the queue of requests processed soon; may be called from any thread."""
+        """Wake the thread that processes the queue of requests. Callable from any thread."""
 
     @abstractmethod
     def close(self) -> None:
-        """Wait at most a second for reliable messages to be sent or acknowledged, then end the engine."""
+        """End the engine, after waiting at most a second for reliable messages to be delivered."""
 
     @abstractmethod
     def abandon(self) -> None:
-        """Stop sending in a forked process, and end without the steps that need the network."""
+        """Stop sending in a forked process, and end the engine without using the network."""
 
     @abstractmethod
     def add_node(self, node: NodeIdentity) -> None:
@@ -107,7 +107,10 @@ class Engine(ABC):
         guarded(partial(self._work.popleft(), self), self._report)
 
     def _report(self, error: Exception) -> None:
-        """Log that an endpoint is not mirrored: the library's refusal, or the traceback of an error of Linkwright."""
+        """Log that an endpoint is not mirrored, with the reason for it.
+
+        For an error of Linkwright itself, the traceback is logged.
+        """
         lines = [str(error)] if isinstance(error, self.refusal) else traceback.format_exception(error)
         self._logger.error("A part of the graph is not visible outside this process: " + "".join(lines).rstrip())
 

@@ -1,7 +1,7 @@
-"""Choose the transport of a process: DDS or Zenoh.
+"""Chooses the transport of a process, DDS or Zenoh.
 
-``RMW_IMPLEMENTATION=rmw_zenoh_cpp`` selects Zenoh, as in ROS 2, and any other value selects DDS. If it is not set, DDS
-is used, or Zenoh if only Zenoh is installed.
+``RMW_IMPLEMENTATION=rmw_zenoh_cpp`` selects Zenoh, as in ROS 2, and any other value selects DDS. If the variable is not
+set, DDS is used, or Zenoh if only Zenoh is installed.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 def middleware(environment: Mapping[str, str] | None = None) -> str:
-    """Return the name of the middleware that this process is compatible with: `ZENOH` or `CYCLONE`.
+    """Return the middleware that this process is compatible with: `ZENOH` or `CYCLONE`.
 
     Args:
         environment: the environment variables; those of this process if omitted.
@@ -63,14 +63,14 @@ def unavailable_reason(environment: Mapping[str, str] | None = None) -> Phrase:
 
 
 def available(environment: Mapping[str, str] | None = None) -> bool:
-    """Return whether other processes can be reached."""
+    """Return whether this process can communicate with others."""
     return not unavailable_reason(environment)
 
 
 def check_security(environment: Mapping[str, str] | None = None) -> None:
-    """Raise an error if only nodes with DDS security may join.
+    """Raise an error if security is enforced, that is, only nodes with DDS security may join.
 
-    No error is raised if communication with other processes is switched off.
+    If communication with other processes is switched off, no error is raised.
 
     Raises:
         LinkwrightError: DDS121, security is enforced.
@@ -102,11 +102,11 @@ def join(graph: Graph, **options: Unpack[JoinOptions]) -> BackgroundTransport | 
     process.
 
     Args:
-        graph: the graph; the transport attaches itself to it.
+        graph: the graph, to which the transport is attached.
         options: see `JoinOptions`.
 
     Returns:
-        The transport; None if no transport is available, it is switched off, or its settings are wrong.
+        The transport; None if no transport is available, communication is switched off, or the settings are wrong.
 
     Raises:
         LinkwrightError: DDS121, security is enforced.

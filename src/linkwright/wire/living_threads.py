@@ -1,4 +1,4 @@
-"""Call functions so that a failure is reported and does not end the calling thread."""
+"""Calls functions so that a failure is reported and does not end the calling thread."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ def guarded(call: Callable[[], R], report: Callable[[Exception], object] | None 
 
     Args:
         call: the function.
-        report: receives the error. If it is None, or fails itself, Python reports the error as one that ends a thread
-            (``threading.excepthook``).
+        report: receives the exception. If it is None, or fails itself, Python reports the exception as one that ends a
+            thread (``threading.excepthook``).
 
     Returns:
         The return value of the function; None if it failed.

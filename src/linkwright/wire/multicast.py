@@ -1,6 +1,6 @@
 """UDP multicast without DDS, for commands that test whether the network supports it.
 
-Group and port are those of ros2cli.
+The default group and port are those of ros2cli.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ LARGEST = 4096
 
 
 def open_sender(ttl: int | None = None) -> socket.socket:
-    """Open a socket for `send`.
+    """Open a socket with which `send` can send datagrams.
 
     Args:
-        ttl: how many hops a datagram may travel; None for the system's default of 1, which no router passes on.
+        ttl: the maximum number of hops of a datagram; None for the system's default of 1, which stops at routers.
     """
     sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     if ttl is not None:
@@ -32,7 +32,7 @@ def send(sender: socket.socket, data: bytes, group: str = GROUP, port: int = POR
     """Send a datagram.
 
     Raises:
-        LinkwrightError: CLI461, the system refuses to send it.
+        LinkwrightError: CLI461, the system refuses to send the datagram.
     """
     try:
         sender.sendto(data, (group, port))
@@ -41,10 +41,10 @@ def send(sender: socket.socket, data: bytes, group: str = GROUP, port: int = POR
 
 
 def open_receiver(group: str = GROUP, port: int = PORT) -> socket.socket:
-    """Open a socket that receives the datagrams of a group, even if other programs receive them too.
+    """Open a socket that receives the datagrams of a group, which other programs may share.
 
     Raises:
-        LinkwrightError: CLI461, the system refuses to open it.
+        LinkwrightError: CLI461, the system refuses to open the socket.
     """
     receiver = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     try:

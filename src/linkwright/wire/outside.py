@@ -11,7 +11,10 @@ from linkwright.graph.names.rules import NodeIdentity
 
 
 class Outside(ABC):
-    """The discovered nodes and endpoints; written by one thread, read by any."""
+    """The discovered nodes and endpoints of other processes.
+
+    One thread writes to this object; any thread may read from it.
+    """
 
     def __init__(self) -> None:
         self._watchers: list[Callable[[], None]] = []
@@ -27,11 +30,11 @@ class Outside(ABC):
         """Return the endpoints of other processes."""
 
     def watch(self, changed: Callable[[], None]) -> None:
-        """Register a callback for changes; it is called in the discovery thread."""
+        """Register a callback for changes, which runs in the discovery thread."""
         self._watchers.append(changed)
 
     def announce(self) -> None:
-        """Notify the watchers that something has changed."""
+        """Call the registered callbacks after a change."""
         self.changed_at = time.monotonic()
         for watcher in tuple(self._watchers):
             watcher()

@@ -1,7 +1,7 @@
-"""Serialize and deserialize requests and responses, for all transports.
+"""Serializes and deserializes requests and responses, for all transports.
 
-They are passed on in transport threads, which other endpoints depend on. A failure there is logged like the failure of
-a callback, and does not propagate.
+This happens in transport threads, on which other endpoints depend. A failure there is logged like the failure of a
+callback, and does not propagate.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ def forward_request(body: bytes, service: Any, reply: Callable[[Any], None], req
         body: CDR with its header; passed on unchanged to a raw service.
         service: the service.
         reply: called with the response.
-        request_id: the client and the request's number.
+        request_id: the request's client and sequence number.
 
     Returns:
-        Whether the service accepted it; if not, the reason is logged.
+        Whether the service accepted the request. If it did not, the reason is logged.
     """
     try:
         request = _read_or_warn(body, "Request", service)
@@ -37,7 +37,9 @@ def forward_request(body: bytes, service: Any, reply: Callable[[Any], None], req
 
 
 def forward_response(body: bytes, client: Any, answer: Callable[[Any], None]) -> None:
-    """Pass a response to the caller that waits for it; a response that cannot be read is logged.
+    """Pass a response to the caller that waits for it.
+
+    If the response cannot be decoded, the reason is logged.
 
     Args:
         body: CDR with its header; passed on unchanged to a raw client.
@@ -64,5 +66,5 @@ def _read_or_warn(body: bytes, half: Literal["Request", "Response"], endpoint: A
 
 
 def to_cdr(message: Any) -> bytes:
-    """Return the CDR of a request or response, with its header; bytes are returned unchanged."""
+    """Serialize a request or response to CDR with its header; bytes are returned unchanged."""
     return message if type(message) is bytes else serialize(message)

@@ -22,5 +22,5 @@ def is_switched_off(environment: Mapping[str, str] | None = None) -> bool:
 
 
 def switched_off() -> Phrase:
-    """Return the text that states why communication is switched off."""
+    """Return a text that explains how communication was switched off."""
     return phrase("the environment variable {switch} is 0", switch=SWITCH)

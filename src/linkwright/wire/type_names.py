@@ -1,4 +1,4 @@
-"""Convert the names of ROS types to and from their names on the wire, which are the same for DDS and Zenoh."""
+"""Converts the names of ROS types to and from their names on the wire, for DDS and Zenoh."""
 
 from __future__ import annotations
 
@@ -8,12 +8,15 @@ _TYPE = re.compile(r"(?P<package>\w+)::(?P<kind>msg|srv|action)::dds_::(?P<name>
 
 
 def dds_type(type_name: str) -> str:
-    """Return the wire name of a ROS type: ``std_msgs/msg/Header`` becomes ``std_msgs::msg::dds_::Header_``."""
+    """Return the name of a ROS type on the wire.
+
+    For example, ``std_msgs/msg/Header`` becomes ``std_msgs::msg::dds_::Header_``.
+    """
     package, kind, name = type_name.split("/")
     return f"{package}::{kind}::dds_::{name}_"
 
 
 def ros_type(type_name: str) -> str | None:
-    """Return the ROS name for a type name on the wire; None if it does not have the form of a ROS type."""
+    """Return the ROS name of a type on the wire; None if the type is not a ROS type."""
     match = _TYPE.fullmatch(type_name)
     return f"{match['package']}/{match['kind']}/{match['name']}" if match else None

@@ -1,7 +1,8 @@
-"""ROS 2 settings in the environment that no transport supports: security, discovery servers, other middlewares.
+"""ROS 2 settings that no transport supports: security, discovery servers, other middlewares.
 
-A real node applies them: it refuses nodes without certificates, or is found only through a server. Ours would start
-anyway and find no other node, or send unencrypted data that the user believes to be encrypted.
+A real node applies these settings: it refuses nodes without certificates, or is found only through a server. A
+Linkwright node would start anyway and find no other node, or send unencrypted data that the user believes to be
+encrypted.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ _reported: set[str] = set()
 
 
 def refuse_enforced_security(environment: Mapping[str, str] | None = None) -> None:
-    """Raise an error if security is enforced, because no node may then join the graph without it (SROS 2).
+    """Raise an error if security is enforced: no node may then join the graph without it.
 
     Args:
         environment: the environment variables; those of this process if omitted.
@@ -57,7 +58,7 @@ def refuse_enforced_security(environment: Mapping[str, str] | None = None) -> No
 
 
 def unsupported_settings(environment: Mapping[str, str] | None = None) -> list[Diagnostic]:
-    """Return a warning for each setting that is not supported.
+    """Return a warning for each setting in the environment that is not supported.
 
     Args:
         environment: the environment variables; those of this process if omitted.
@@ -111,7 +112,7 @@ def unsupported_settings(environment: Mapping[str, str] | None = None) -> list[D
 
 
 def new_unsupported_settings(environment: Mapping[str, str] | None = None) -> list[Diagnostic]:
-    """Return the `unsupported_settings` not yet returned in this process, so that each is reported once."""
+    """Return the warnings of `unsupported_settings` that this process has not returned before."""
     found = [setting for setting in unsupported_settings(environment) if setting.code not in _reported]
     _reported.update(diagnostic.code for diagnostic in found)
     return found

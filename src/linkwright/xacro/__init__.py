@@ -1,4 +1,4 @@
-"""The xacro macro language as in ros/xacro 2.1, with positions and without its security holes."""
+"""The xacro macro language of ros/xacro 2.1, with source positions, without security holes."""
 
 from linkwright.loading.deferred import deferred
 from linkwright.loading.lean_typing import TYPE_CHECKING

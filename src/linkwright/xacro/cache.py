@@ -1,4 +1,4 @@
-"""Caches with limited size, for computed values, compiled texts and parsed files."""
+"""Caches with a limited size, for computed values and for compiled texts."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ _STRIDE = 16
 class BoundedCache(Generic[_Key, _Value]):
     """A cache of values with a limit on their total size.
 
-    When it is full, it drops every sixteenth value, each time starting at a different position. A user that cycles
-    through more values than fit, such as a collection of robots, therefore finds most of them again. If the oldest were
-    dropped first, none would be found.
+    A full cache drops every sixteenth value, each time starting at a different position. A user that cycles through
+    more values than fit, such as a collection of robots, therefore still finds most of the values. If the oldest
+    values were dropped first, such a user would find none.
 
     Args:
         most: the maximum total size.
         size_of: the function that returns the size of a value.
 
     Attributes:
-        values: a plain dict, because it is read for each text of a description.
+        values: the cached values, by key. This is a plain dict because it is read for each text of a description.
     """
 
     def __init__(self, most: int, size_of: Callable[[_Key, _Value], int]) -> None:
@@ -41,7 +41,7 @@ class BoundedCache(Generic[_Key, _Value]):
         values, size_of = self.values, self._size_of
         values.pop(key, None)
         own = size_of(key, value)
-        self._size += own  # too much if the key existed; the count below corrects it
+        self._size += own  # too large if the key existed; the sum below corrects it
         while self._size > self._most and values:
             self._size = own + sum(size_of(*item) for item in list(values.items()))
             if self._size > self._most:
@@ -65,7 +65,7 @@ class TextCompiler(Generic[_Form]):
         compile_text: the function that compiles a text.
 
     Attributes:
-        forms: text -> its compiled form.
+        forms: the compiled forms, by text.
     """
 
     def __init__(self, compile_text: Callable[[str], _Form]) -> None:
@@ -104,8 +104,8 @@ def read_document(path: str, overlay: Overlay | None = None) -> Document:
     Raises:
         LinkwrightError: see `linkwright.xmltree.parse_file`.
     """
-    if _LINKS in path:  # a link folder of an unbuilt package
-        from linkwright.packages.share_layout import source_of  # few robots need the packages room for this
+    if _LINKS in path:  # a folder with links to the files of an unbuilt package
+        from linkwright.packages.share_layout import source_of  # imported here because few robots need it
 
         path = source_of(path)
     unsaved = None if overlay is None else overlay.document(path)
@@ -115,7 +115,7 @@ def read_document(path: str, overlay: Overlay | None = None) -> Document:
     try:
         status = os.stat(path)  # noqa: PTH116
     except (OSError, ValueError):
-        return parse_file(path)  # raises the error with the reason
+        return parse_file(path)  # raises the error with its reason
     known = documents.values.get(key)
     if known is not None and known[:2] == (status.st_mtime_ns, status.st_size):
         return known[2]

@@ -1,16 +1,14 @@
-"""The expansion: a single walk over the tree, in reading order, that writes a new tree.
+"""The expansion: one walk over the source tree in document order that writes a new tree.
 
-Source trees are never changed, so each file is parsed once. Texts and comments without expressions are shared with
-them. Every element of the result keeps the place where it was written, and the macro calls and includes that
-contain it.
+Source trees are never changed, so each file is parsed only once. The new tree shares texts and comments without
+expressions with the source tree. Every element of the result has its position in the source, and the macro calls and
+includes that contain it.
 
-Comments that belong to tags disappear with them during the expansion.
-
-A comment directly above a property, macro, argument, include, condition or macro call describes that tag, and
+A comment directly above a property, macro, argument, include, condition or macro call describes this tag, and
 disappears with it. The choice of comments follows ros/xacro exactly. In a run of comments above the tag, those
 separated by blank text with at most one newline disappear. A marker is left behind, at which the next such run
-stops. A document has only one marker, which moves. It is blank text, so its only visible effect is that an element
-with text and a marker is no longer written on one line.
+stops. A document has only one marker, which moves. The marker is blank text, so its only visible effect is that an
+element with text and a marker is no longer written on one line.
 """
 
 from __future__ import annotations
@@ -56,7 +54,7 @@ class CommentSweeper:
             followed: whether further nodes follow the tag.
 
         Returns:
-            Whether the caller must `mark` the place below the tag.
+            Whether the caller must call `mark` after expanding the tag.
         """
         at = len(siblings) - 1
         while at >= 0:
@@ -82,7 +80,7 @@ class CommentSweeper:
         self._home = siblings
 
     def moved(self, old: list[Node], new: list[Node]) -> None:
-        """Adjust the marker after the nodes of a list have been moved to the end of another list."""
+        """Update the marker after the nodes of a list were moved to the end of another list."""
         if self._home is old:
             self._home = new
 
@@ -91,7 +89,7 @@ _MOST_ERRORS = 20
 
 
 class Container(Element):
-    """An element for the expansion of a tag that itself disappears; it has the tag of the language."""
+    """A temporary element that receives the expansion of a tag, and is not part of the result."""
 
     __slots__ = ()
 
@@ -101,9 +99,9 @@ class Site(NamedTuple):
 
     Attributes:
         node: the tag.
-        parent: the element that receives its expansion.
-        scope: the properties that are visible to it.
-        macros: the macros that are visible to it.
+        parent: the element that receives the expansion of the tag.
+        scope: the properties that are visible at the tag.
+        macros: the macros that are visible at the tag.
         followed: whether further nodes follow the tag.
     """
 
@@ -123,12 +121,12 @@ class Expander:
 
     Args:
         session: the state of the expansion.
-        directives: tag -> the function that expands it.
+        directives: the functions that expand xacro's own tags, by tag.
         call: the function that expands any other tag with the xacro prefix, which is a macro call.
 
     Attributes:
         session: the state of the expansion.
-        sweeper: the remover of comments above xacro tags.
+        sweeper: the sweeper that removes comments above xacro tags.
     """
 
     def __init__(self, session: Session, directives: Mapping[str, Directive], call: Directive) -> None:
@@ -147,7 +145,7 @@ class Expander:
         """Return the expansion of a document.
 
         Raises:
-            LinkwrightError: the mistakes found, each with its place.
+            LinkwrightError: the errors found, each with its location.
         """
         expanded = self.walk(document)
         if expanded is None or self._errors:
@@ -156,11 +154,14 @@ class Expander:
 
     @property
     def errors(self) -> tuple[Diagnostic, ...]:
-        """The errors found, each once."""
+        """The errors found, without repetitions."""
         return tuple(_without_repeats(self._errors))
 
     def walk(self, document: Document) -> Document | None:
-        """Expand a document despite the mistakes in `errors`; None if the walk had to stop."""
+        """Return the expansion of a document despite errors, or None if the walk had to stop.
+
+        The errors are recorded in `errors`.
+        """
         root = document.root
         container = Container("")
         target = root.attributes.get("xacro:targetNamespace")
@@ -189,7 +190,7 @@ class Expander:
         """Expand the children of an element, and append the result to a parent.
 
         Raises:
-            LinkwrightError: a mistake after which the walk cannot continue.
+            LinkwrightError: an error after which the walk cannot continue.
         """
         output, session, directives = parent.children, self.session, self._directives
         evaluate_comments = False
@@ -222,7 +223,7 @@ class Expander:
         self._nesting -= 1
 
     def _copy(self, run: Run, output: list[Node]) -> None:
-        """Append adjacent nodes that need no expansion to a parent."""
+        """Append adjacent nodes that need no expansion to a list of output nodes."""
         budget, frame = self.session.budget, self.session.frame
         if run.size > budget.elements or self._nesting + run.height > self._deepest:
             self._copy_singly(run, output)
@@ -231,7 +232,7 @@ class Expander:
         output += [LazyCopy(node, frame) if isinstance(node, Element) else node for node in run.nodes]
 
     def _copy_singly(self, run: Run, output: list[Node]) -> None:
-        """Copy the nodes one by one, to find the element that reaches a limit."""
+        """Copy the nodes one by one, so that the error names the element that exceeds a limit."""
         elements, scope, macros = self.session.budget, Scope(None, self.session), MacroTable()
         between = 0
         for node in run.nodes:
@@ -245,7 +246,10 @@ class Expander:
         elements.elements -= between >> 3
 
     def element(self, node: Element, output: list[Node], scope: Scope, macros: MacroTable) -> None:
-        """Expand an ordinary element: first its attributes, then its content."""
+        """Expand an ordinary element and append it to the output.
+
+        The attributes are evaluated before the content.
+        """
         session = self.session
         plan = node.plan
         if not isinstance(plan, Plan):
@@ -265,14 +269,14 @@ class Expander:
             self.children(node, element, scope, macros)
 
     def blocks(self, node: Element, scope: Scope, macros: MacroTable) -> Element:
-        """Expand the elements inside a macro call into a container."""
+        """Return a container with the expanded content of a macro call."""
         container = Container(node.tag)
         if node.children:
             self.children(node, container, scope, macros)
         return container
 
     def attributes(self, node: Element, scope: Scope) -> dict[str, str]:
-        """Return the evaluated attributes of an element, without those of xacro."""
+        """Return the evaluated attributes of an element, except those for xacro."""
         session, plan = self.session, plan_of(node)
         result = plan.attributes.copy()
         for name in plan.evaluated:
@@ -331,10 +335,10 @@ class Expander:
             data = ""
         return Comment(data, node.source, node.offset)
 
-    # helpers of the tags
+    # helpers for directives
 
     def value(self, node: Element, name: str, scope: Scope) -> object:
-        """Return the typed value of an attribute that the element has."""
+        """Return the evaluated value of an existing attribute, with its type."""
         text = node.attributes[name]
         if "$" not in text:
             return text
@@ -346,11 +350,11 @@ class Expander:
             self.fail(fault)
 
     def text_value(self, node: Element, name: str, scope: Scope) -> str:
-        """Return the value of an attribute that the element has, as the text that would be written."""
+        """Return the evaluated value of an existing attribute as text."""
         return self.written(node, name, self.value(node, name, scope))
 
     def written(self, node: Element, name: str, value: object) -> str:
-        """Return the text that is written for the value of an attribute."""
+        """Return the text that xacro writes for the value of an attribute."""
         try:
             return self.session.written(node.attributes[name], value)
         except Fault as fault:
@@ -364,7 +368,10 @@ class Expander:
             self.sweeper.mark(output)
 
     def splice(self, container: Element, site: Site) -> None:
-        """Replace a tag with the content of a container; `xacro:attribute` in it sets the parent's attributes."""
+        """Replace a tag with the content of a container.
+
+        The attributes of the container, which `xacro:attribute` sets, become attributes of the parent.
+        """
         output = site.parent.children
         output.extend(container.children)
         self.sweeper.moved(container.children, output)
@@ -373,7 +380,10 @@ class Expander:
                 site.parent.attributes[name] = value
 
     def lift_namespaces(self, container: Element, site: Site) -> None:
-        """Declare the namespace prefixes of an include's root or a macro's tag on the parent."""
+        """Declare the namespace prefixes of an included root or of a macro on the parent.
+
+        A prefix that the parent already declares with another URI causes a warning.
+        """
         attributes = site.parent.attributes
         for name, value in container.attributes.items():
             if not name.startswith("xmlns:"):
@@ -391,7 +401,7 @@ class Expander:
         """Enter a macro call or an include.
 
         Raises:
-            LinkwrightError: XAC601 if too many others enclose it.
+            LinkwrightError: XAC601 if calls and includes are nested too deeply.
         """
         limit = self.session.limits.depth
         if frame.depth > limit:
@@ -426,7 +436,7 @@ class Expander:
         fault.place_at(next(node.elements(), node))
         self.fail(fault)
 
-    # mistakes
+    # errors
 
     def _out_of_stack(self) -> Diagnostic:
         place = self.session.place
@@ -437,14 +447,18 @@ class Expander:
         )
 
     def note(self, fault: Fault) -> None:
-        """Record a mistake after which the walk can continue, unless there are too many mistakes."""
+        """Record an error after which the walk can continue.
+
+        Raises:
+            LinkwrightError: if there are too many errors, or if this error ends every walk.
+        """
         self.keep(self._diagnostic(fault))
 
     def keep(self, diagnostic: Diagnostic) -> None:
-        """Record a mistake after which the walk can continue.
+        """Record the diagnostic of an error after which the walk can continue.
 
         Raises:
-            LinkwrightError: if there are too many mistakes, or this one ends every walk.
+            LinkwrightError: if there are too many errors, or if this error ends every walk.
         """
         if is_final(diagnostic):
             raise LinkwrightError(diagnostic)
@@ -454,17 +468,17 @@ class Expander:
 
     @property
     def has_too_many_errors(self) -> bool:
-        """Whether further errors would no longer be useful to the reader."""
+        """Whether there are so many errors that further ones would not help the user."""
         return len(_without_repeats(self._errors)) >= _MOST_ERRORS
 
     def fail(self, fault: Fault) -> NoReturn:
-        """Stop because of a mistake whose place is known."""
+        """Raise the error of a fault that has a location."""
         raise LinkwrightError(self._diagnostic(fault)) from None
 
     def fail_at(
         self, code: str, message: Phrase, node: Element, span: Span | None, hint: Phrase | None = None, *notes: Note
     ) -> NoReturn:
-        """Stop because of a mistake at a place."""
+        """Raise an error at a location of a node."""
         notes = (*notes, *trail(self.session.frame))
         raise LinkwrightError(Diagnostic(code, message, span, notes=notes, hint=hint, source=node.source))
 
@@ -480,7 +494,10 @@ class Expander:
 
 
 def is_final(diagnostic: Diagnostic) -> bool:
-    """Return whether a mistake ends every walk: an expansion limit, or a fatal error of the description."""
+    """Return whether an error ends every walk, such as an exceeded expansion limit.
+
+    An error that the description itself raises with ``xacro.fatal`` also ends every walk.
+    """
     return diagnostic.code.startswith("XAC6") or diagnostic.code == "XAC701"
 
 
@@ -504,10 +521,10 @@ def _without_repeats(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
 
 
 def check_attributes(expander: Expander, node: Element, required: tuple[str, ...], optional: tuple[str, ...]) -> None:
-    """Check that a tag has its required attributes, and warn about attributes that have no meaning.
+    """Check that a tag has its required attributes, and warn about unknown attributes.
 
     Raises:
-        LinkwrightError: XAC301 if one is missing.
+        LinkwrightError: XAC301 if a required attribute is missing.
     """
     attributes = node.attributes
     for name in required:
@@ -538,7 +555,7 @@ def check_attributes(expander: Expander, node: Element, required: tuple[str, ...
 
 
 def warn_of_global(expander: Expander, node: Element, name: str, attribute: str) -> None:
-    """Warn that a name that the language provides is redefined."""
+    """Warn if a definition hides a name that xacro provides."""
     if name in expander.session.globals.values:
         message = phrase("'{name}' is a name that xacro provides, and is redefined here", name=name)
         span = node.attribute_span(attribute) if attribute == "name" else attribute_name(node, attribute)

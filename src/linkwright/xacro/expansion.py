@@ -1,4 +1,4 @@
-"""Expansion of a file: the resulting document, its arguments, dependencies and diagnostics."""
+"""The expansion of a file: the resulting document, arguments, dependencies and diagnostics."""
 
 from __future__ import annotations
 
@@ -25,12 +25,11 @@ class Expansion:
     """The result of expanding a file.
 
     Attributes:
-        document: the expanded document. Every element has the source and offset where it was written.
-        arguments: name -> final value of every argument that was passed or declared.
-        diagnostics: warnings, and the messages that the description writes with ``xacro.message`` and similar
-            functions.
+        document: the expanded document. Every element has the source and the offset at which it was written.
+        arguments: the final value of every argument that was passed or declared, by name.
+        diagnostics: warnings, and the messages that the description shows with ``xacro.message`` and similar functions.
         inputs: the inputs of the expansion, or None.
-        problems: the mistakes that made parts missing; see `linkwright.xacro.parts`.
+        problems: the errors that made parts missing; see `linkwright.xacro.parts`.
     """
 
     def __init__(
@@ -52,30 +51,30 @@ class Expansion:
 
     @property
     def dependencies(self) -> tuple[Path, ...]:
-        """The files that were read, the main file first."""
-        from pathlib import Path  # imported here because pathlib takes long to import
+        """The paths of the files that were read, starting with the main file."""
+        from pathlib import Path  # imported here because the import of pathlib is slow
 
         return tuple(Path(file) for file in self._dependencies)
 
     def __str__(self) -> str:
-        """Return the text that ros/xacro writes."""
+        """Return the expanded document as text, exactly as ros/xacro writes it."""
         if self._text is None:
             self._text = write(self.document)
         return self._text
 
     def origin(self, element: Element) -> Origin:
-        """Return where an element of the document was written, and the calls and includes that produced it."""
+        """Return the location of an element, and the calls and includes that produced it."""
         return origin_of(element)
 
     def provenance(self, element: Element) -> Provenance:
         """Return the provenance of an element of the document.
 
-        It contains the `origin`, its parameters, and the provenance of each attribute.
+        The provenance contains the `origin`, its parameters, and the provenance of each attribute.
 
-        This expands the file again, so the files must be unchanged.
+        The file is expanded again, so the files must be unchanged.
 
         Raises:
-            LinkwrightError: XAC802 if the files have changed, or the element does not belong to the document.
+            LinkwrightError: XAC802 if the files have changed, or if the element does not belong to the document.
         """
         if self.inputs is None:
             raise LinkwrightError(Diagnostic("XAC802", phrase("the document has no record of its expansion")))
@@ -94,22 +93,23 @@ def expand(
     root_dir: str | Path | None = None,
     overlay: Overlay | None = None,
 ) -> Expansion:
-    """Expand a xacro file as ros/xacro 2.1 does; a plain URDF file stays unchanged.
+    """Expand a xacro file as ros/xacro 2.1 does; a plain URDF file is returned unchanged.
 
     Args:
-        path_or_text: the file, or a text, which is recognized by its ``<``. Relative paths in a file are relative to
-            its folder, those in a text to `root_dir`. The banner contains the path as given here.
-        arguments: name -> value of the arguments (``name:=value``); they take precedence over the defaults in the file.
+        path_or_text: the path of a file, or a text, which is recognized by its ``<``. Relative paths in a file are
+            relative to its folder, and those in a text to `root_dir`. The banner contains the path as given here.
+        arguments: the values of arguments (``name:=value``), by name. They take precedence over the defaults in the
+            file.
         packages: the packages for ``$(find name)``: an object with ``share(name)``, such as a `PackageFinder`, or a
             mapping from package to share folder that takes precedence over the surroundings of the file.
-        text: the text to expand instead of the file's, such as one that is not yet saved.
-        limits: bounds for the expansion.
-        root_dir: the folder that relative paths start from; the current one if None.
-        overlay: texts that replace those of files, included files and YAML files among them.
+        text: the text to expand instead of that of the file, such as an unsaved one.
+        limits: the limits of the expansion.
+        root_dir: the base of relative paths, or None for the current folder.
+        overlay: texts that replace those of files, including included files and YAML files.
 
     Raises:
-        LinkwrightError: the mistakes, each with its place, the macro calls and includes that led there, and
-            a hint.
+        LinkwrightError: the errors found, each with its location, the macro calls and includes that led there, and a
+            hint.
     """
     name = str(path_or_text)
     if text is None and is_text(path_or_text):
@@ -136,7 +136,7 @@ _BANNER = (
 
 
 def banner(name: str) -> list[Comment]:
-    """Return the comments that name the file from which a text was generated."""
+    """Return the comments at the top of an expanded text, which name its source file."""
     shown = name
     while "--" in shown:  # XML does not allow two dashes in a comment
         shown = shown.replace("--", "-")

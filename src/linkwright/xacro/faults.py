@@ -1,8 +1,8 @@
-"""Mistakes found while a text is evaluated, before they are reported, and the origin of an element.
+"""Mistakes found during the evaluation of a text, and the origin of elements.
 
 The code that finds a mistake knows the text and the offsets in it, but not the element that contains the text.
-Therefore, a `Fault` starts with offsets. It gets its place from the evaluation of an element's text, and a note for
-each property.
+Therefore, a `Fault` first has offsets only. The code that evaluates the text of an element adds the location, and
+each property on the way adds a note.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ _SHOWN = 10
 
 
 class Frame:
-    """A macro call or an include, and the enclosing one.
+    """A macro call or an include, with the frame that encloses it.
 
     Attributes:
         macro: the macro's name, or None for an include.
-        site: the element that makes the call or includes the file.
+        site: the element that calls the macro or includes the file.
         around: the frame of the enclosing call or include, or None.
         depth: the number of frames up to and including this one.
     """
@@ -37,7 +37,7 @@ class Frame:
         self.depth: int = 1 if around is None else around.depth + 1
 
     def note(self) -> Note:
-        """Return the note for this frame in a message."""
+        """Return a note on this call or include for a message."""
         what = (
             phrase("included from here")
             if self.macro is None
@@ -50,7 +50,7 @@ class Origin(NamedTuple):
     """The origin of an element of an expansion.
 
     Attributes:
-        span: the place where it is written; None for an element created by a program.
+        span: the location where the element is written, or None for an element created by a program.
         trail: notes on the enclosing macro calls and includes, innermost first.
     """
 
@@ -67,7 +67,10 @@ def frames(innermost: Frame | None) -> Iterator[Frame]:
 
 
 def trail(innermost: Frame | None) -> tuple[Note, ...]:
-    """Return the notes of all frames, innermost first; the outermost of very many are only counted."""
+    """Return notes on all frames, innermost first.
+
+    If there are very many frames, the outermost ones are only counted.
+    """
     notes: list[Note] = []
     for site, group in groupby(frames(innermost), key=lambda frame: frame.site):
         repeated = list(group)
@@ -87,7 +90,7 @@ def origin_of(element: Element) -> Origin:
     return Origin(element.span(), trail(frame if isinstance(frame, Frame) else None))
 
 
-# Not compiled here: few files need them.
+# These patterns are not compiled here because few files need them.
 _COMMENT = r"(?s)<!--.*?-->"
 _BLOCK = r"""<(/?)xacro:(if|unless|macro)\b(?:[^>"'/]|"[^"]*"|'[^']*'|/(?!>))*(/?)>"""
 """A tag that begins or ends a condition or a macro."""
@@ -97,8 +100,8 @@ class Elsewhere(NamedTuple):
     """A definition of a name that is not in effect where the name is used.
 
     Attributes:
-        note: the message and the place of the definition.
-        hint: how to fix this, if the fix depends on why the definition is not in effect.
+        note: the message and the location of the definition.
+        hint: how to fix the mistake, or None if this does not depend on the definition.
     """
 
     note: Note
@@ -112,13 +115,13 @@ class Fault(Exception):  # noqa: N818 - it becomes a diagnostic, and is not part
         code: the diagnostic's code.
         message: the diagnostic's message.
         start: the offset of the mistake in the text being evaluated, or None for the whole text.
-        end: the offset of its end (exclusive), or None.
+        end: the offset after the mistake, or None for the whole text.
         hint: how to fix the mistake.
-        span: the place of the mistake, once it is known.
-        source: the text that the span is in.
-        notes: notes on how the evaluation reached that place, innermost first.
-        passing: the text of the note for the next place on the way out, such as "property 'a' is used here".
-        missing: the name of the property that is missing, if that is the mistake.
+        span: the location of the mistake, or None until it is known.
+        source: the text that contains the span.
+        notes: notes on how the evaluation reached this location, innermost first.
+        passing: the text of the note for the next location on the way out, such as "property 'a' is used here".
+        missing: the name of the missing property, or None for other mistakes.
     """
 
     def __init__(
@@ -137,9 +140,10 @@ class Fault(Exception):  # noqa: N818 - it becomes a diagnostic, and is not part
         self.missing: str | None = None
 
     def within(self, start: int, end: int, shift: int | None = None) -> None:
-        """Convert the offsets to the enclosing text.
+        """Convert the offsets to offsets in the enclosing text.
 
-        There, the mistake is inside `start` to `end`, or at its own offsets plus `shift`.
+        If `shift` is given and the offsets are known, it is added to them. Otherwise, the mistake extends from `start`
+        to `end`.
         """
         if self.start is None or self.end is None or shift is None:
             self.start, self.end = start, end
@@ -147,21 +151,27 @@ class Fault(Exception):  # noqa: N818 - it becomes a diagnostic, and is not part
             self.start, self.end = self.start + shift, self.end + shift
 
     def place_in_attribute(self, element: Element, name: str, shift: int = 0) -> None:
-        """Set the place: the text is the value of an attribute, or the part of it from `shift`."""
+        """Set the location to an attribute's value; the evaluated text starts at `shift` in it.
+
+        If the location is already set, a note is added instead.
+        """
         start = None if self.start is None else self.start + shift
         end = None if self.end is None else self.end + shift
         self._place(element.source, attribute_part(element, name, start, end))
 
     def place_in_text(self, text: Text) -> None:
-        """Set the place: the text is character data."""
+        """Set the location to character data, or add a note if the location is already set."""
         self._place(text.source, text_part(text, self.start, self.end))
 
     def place_at(self, element: Element) -> None:
-        """Set the place to an element that represents a text without a source."""
+        """Set the location to an element, for an evaluated text without a source."""
         self._place(element.source, element.span())
 
     def elsewhere(self) -> Elsewhere | None:
-        """Return a definition of the missing property in the same file that is not in effect here, or None."""
+        """Return a definition of the missing property that is not in effect here, or None.
+
+        Only the same file is searched. A definition without the xacro prefix also changes the hint.
+        """
         if self.missing is None or self.source is None:
             return None
         if self.hint is not None and self.hint.startswith(f"'{self.missing}' is defined"):
@@ -186,7 +196,7 @@ def definition_elsewhere(
 ) -> Elsewhere | None:
     """Return a definition of a name in a file that is not in effect at an offset, or None."""
     if f"<{prefix}{tag}" not in source.text:
-        return None  # avoids compiling the patterns below
+        return None  # return early to avoid compiling the patterns below
     text = re.sub(_COMMENT, lambda comment: " " * len(comment[0]), source.text)
     pattern = rf"""<{prefix}{tag}\s(?:[^>"']|"[^"]*"|'[^']*')*?\bname\s*=\s*["']{re.escape(name)}["']"""
     match = re.search(pattern, text)
@@ -206,7 +216,10 @@ def definition_elsewhere(
 
 
 def _is_conditional(before: str) -> bool:
-    """Return whether a text ends inside a condition, but not inside a macro, whose definitions are local."""
+    """Return whether a text ends inside a condition that is not inside a macro.
+
+    Definitions inside a macro are local.
+    """
     open_tags: list[str] = []
     for closing, tag, single in re.findall(_BLOCK, before):
         if closing:
@@ -218,7 +231,7 @@ def _is_conditional(before: str) -> bool:
 
 
 def attribute_part(element: Element, name: str, start: int | None, end: int | None) -> Span | None:
-    """Return the place of a part of an attribute's value, as exactly as possible."""
+    """Return the location of a part of an attribute's value, as exactly as possible, or None."""
     from linkwright.xmltree.positions import attribute_value_range, raw_offset
 
     source = element.source
@@ -232,12 +245,12 @@ def attribute_part(element: Element, name: str, start: int | None, end: int | No
     if raw == value:
         return source.span(written[0] + start, written[0] + end)
     if "&" not in raw and "\n" not in raw and "\t" not in raw and value is not None:
-        return source.span(*written)  # a block that was evaluated: its value differs from the source
+        return source.span(*written)  # the value differs from the source, such as in a block that was evaluated
     return source.span(raw_offset(source.text, *written, start), raw_offset(source.text, *written, end))
 
 
 def attribute_name(element: Element, name: str) -> Span | None:
-    """Return the place of an attribute's name, or of the element if it lacks the attribute."""
+    """Return the location of an attribute's name, or of the element if it lacks the attribute."""
     from linkwright.xmltree.positions import attribute_name_range
 
     source = element.source
@@ -248,7 +261,7 @@ def attribute_name(element: Element, name: str) -> Span | None:
 
 
 def text_part(text: Text, start: int | None, end: int | None) -> Span | None:
-    """Return the place of a part of some character data, as exactly as possible."""
+    """Return the location of a part of some character data, as exactly as possible, or None."""
     from linkwright.xmltree.positions import raw_offset
 
     source = text.source

@@ -1,6 +1,6 @@
-"""Inspection of a description beyond its expansion: its arguments, and the provenance of its elements.
+"""The arguments of a description, and the origin of its elements.
 
-The modules for this are imported on demand.
+The modules that provide the information are imported on demand.
 """
 
 from __future__ import annotations
@@ -32,17 +32,17 @@ def arguments_of(
     limits: Limits | None = None,
     root_dir: str | Path | None = None,
 ) -> tuple[Argument, ...]:
-    """Return the arguments of a file and of the files that it includes, in the order of the files.
+    """Return the arguments of a file and of its included files, in the order of the files.
 
-    The file need not be expandable without arguments.
+    The arguments are also found if the file cannot be expanded without them.
 
     Args:
-        path: the file; see `linkwright.xacro.expand` for all arguments.
-        arguments: name -> value of arguments that may decide which files are included.
+        path: the file; see `linkwright.xacro.expand`.
+        arguments: the values of arguments that may decide which files are included, by name.
         packages: the packages for ``$(find name)``.
-        text: the text to use instead of the file's.
-        limits: bounds for the expansion.
-        root_dir: the folder that relative paths start from.
+        text: the text to use instead of that of the file.
+        limits: the limits of the expansion.
+        root_dir: the base of relative paths.
 
     Raises:
         LinkwrightError: if the file cannot be read or is not XML.
@@ -63,22 +63,22 @@ def explain(
     limits: Limits | None = None,
     root_dir: str | Path | None = None,
 ) -> tuple[Provenance, ...]:
-    """Return the provenance of the elements with a name in an expansion: links, joints, or others.
+    """Return the provenance of the links, joints or other elements with a name in an expansion.
 
     Args:
-        path: the file; see `linkwright.xacro.expand` for all other arguments.
+        path: the file; see `linkwright.xacro.expand`.
         name: the value of the attribute ``name``.
-        arguments: name -> value of the arguments.
+        arguments: the values of the arguments, by name.
         packages: the packages for ``$(find name)``.
-        text: the text to use instead of the file's.
-        limits: bounds for the expansion.
-        root_dir: the folder that relative paths start from.
+        text: the text to use instead of that of the file.
+        limits: the limits of the expansion.
+        root_dir: the base of relative paths.
 
     Returns:
-        The provenance of at least one element: of elements directly in the root or, if there are none, of deeper ones.
+        The provenance of at least one element. If children of the root have the name, deeper elements are left out.
 
     Raises:
-        LinkwrightError: the mistakes of the file, or XAC801 if no element has the name.
+        LinkwrightError: the errors of the file, or XAC801 if no element has the name.
     """
     inputs = Inputs(str(path), arguments or {}, packages, text, limits or Limits(), str(root_dir or ""))
     return provenance_of_named(inputs, name)

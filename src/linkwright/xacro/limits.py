@@ -1,12 +1,12 @@
-"""Limits at which an expansion is stopped.
+"""The limits at which an expansion is stopped.
 
-Descriptions often come from unknown sources. Opening any description must end, and soon.
+Descriptions often come from unknown sources. The expansion of any description must end, and soon.
 """
 
 from __future__ import annotations
 
 import sys
-from _thread import allocate_lock  # threading.Lock, without importing the rest of threading
+from _thread import allocate_lock  # the lock of threading, without importing the rest of threading
 from time import thread_time
 
 from linkwright.diagnostics import phrase
@@ -16,16 +16,16 @@ from linkwright.xmltree.nodes import seldom_collected
 
 
 class Limits(NamedTuple):
-    """Limits of one expansion; the defaults are far above the needs of any real robot.
+    """The limits of one expansion, with defaults that are far above the needs of any real robot.
 
     Attributes:
-        depth: the maximum number of simultaneously active macro calls and includes.
+        depth: the maximum number of nested macro calls and includes.
         nesting: the maximum nesting depth of elements, including the elements of enclosing macro calls.
-        elements: the maximum number of produced elements; a macro call counts as ten, any other xacro tag as two.
+        elements: the maximum number of produced elements. A macro call counts as ten, any other xacro tag as two.
         steps: the maximum number of steps of all expressions. An iteration of a comprehension or a call of a function
             counts as two, a call of a lambda as eight, and a pass over two items or 32 characters of a value as one.
         characters: the maximum total length of all long texts and attributes of the result.
-        seconds: the maximum processor time.
+        seconds: the maximum processor time in seconds.
     """
 
     depth: int = 200
@@ -43,7 +43,10 @@ _before = 0
 
 
 class recursion_limit_for:  # noqa: N801 - it is called in a ``with`` statement, as a function is
-    """Raise Python's recursion limit so that our own limits apply first; restore it after the last use."""
+    """A context in which Python's recursion limit is so high that our own limits apply first.
+
+    The limit is restored when the last context ends.
+    """
 
     def __init__(self, limits: Limits) -> None:
         self._limits = limits
@@ -82,11 +85,11 @@ LONG = 1_000
 
 
 class Budget:
-    """The budget of one expansion: the remaining elements, steps, characters, calls and seconds.
+    """The remaining budget of one expansion: elements, steps, characters, calls and seconds.
 
     Attributes:
-        elements: the number of elements that may still be produced; the producer decrements it, and calls
-            `too_many_elements` below zero.
+        elements: the number of elements that may still be produced. The code that produces an element decrements it,
+            and raises `too_many_elements` if it becomes negative.
     """
 
     __slots__ = ("_call_depth", "_characters", "_ends", "_limits", "_look_at", "_macros", "_steps", "elements")
@@ -98,7 +101,7 @@ class Budget:
         self._characters = limits.characters
         self._call_depth = 0
         self._macros = 0
-        self._look_at = limits.steps  # the number of remaining steps at which the clock is read next
+        self._look_at = limits.steps  # when so many steps remain, the clock is read next
         self._ends = thread_time() + limits.seconds
 
     def too_many_elements(self) -> Fault:
@@ -127,7 +130,7 @@ class Budget:
         """Charge a macro call or an include.
 
         Raises:
-            Fault: XAC602 or XAC606 if there were too many or they took too long.
+            Fault: XAC602 if there were too many, or XAC606 if the expansion took too long.
         """
         self.elements -= _MACRO
         if self.elements < 0:
@@ -137,10 +140,10 @@ class Budget:
             self._look_at_clock()
 
     def charge_steps(self, count: int = 2) -> None:
-        """Charge the work of an expression, by default one more iteration of a comprehension.
+        """Charge steps of an expression; the default is one iteration of a comprehension.
 
         Raises:
-            Fault: XAC603 or XAC606 if it was too much or took too long.
+            Fault: XAC603 if there were too many steps, or XAC606 if the expansion took too long.
         """
         self._steps -= count
         if self._steps < self._look_at:
@@ -156,7 +159,7 @@ class Budget:
         """Charge a call of a lambda, which may be recursive.
 
         Raises:
-            Fault: XAC604 if lambda calls are nested too deeply, XAC603 if there were too many calls.
+            Fault: XAC604 if lambda calls are nested too deeply, or XAC603 if there were too many steps.
         """
         self.charge_steps(_LAMBDA)
         self._call_depth += 1
@@ -164,7 +167,7 @@ class Budget:
             raise Fault("XAC604", phrase("lambdas call each other more than {call_depth} deep", call_depth=_CALL_DEPTH))
 
     def leave_lambda(self) -> None:
-        """End the innermost lambda call."""
+        """Leave the innermost lambda call."""
         self._call_depth -= 1
 
     def _look_at_clock(self) -> None:

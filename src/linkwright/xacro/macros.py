@@ -1,4 +1,4 @@
-"""Macros: their parameters, and the tables in which they are found."""
+"""Macros: their parameters, and the tables by which they are found."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.loading.lean_dataclasses import NamedTuple
 from linkwright.xacro.faults import Fault
 from linkwright.xmltree import Element
 
-# Not compiled here: not every file needs them.
+# These patterns are not compiled here because not every file needs them.
 _PARAMETER = r"\s*(?P<name>[^\s:=]+?)\s*:?=\s*(?P<forward>\^\|?)?(?P<expression>(?:\$\{.*?\}|\$\(.*?\))(?=\s|$))?"
 _BARE = r"\s*(?P<name>\S+)\s*"
 
@@ -20,11 +20,11 @@ class Parameter(NamedTuple):
     """A parameter of a macro.
 
     Attributes:
-        name: the name of the parameter; the name of a block begins with one or two asterisks.
+        name: the name of the parameter. The name of a block begins with one or two asterisks.
         default: the text of the default, or None.
-        forward: whether it uses the caller's property with the same name if it gets no argument.
-        start: the offset of its name in the list of parameters.
-        default_start: the offset of its default in the list of parameters.
+        forward: whether a call without this argument uses the caller's property with the same name.
+        start: the offset of the name in the list of parameters.
+        default_start: the offset of the default in the list of parameters.
     """
 
     name: str
@@ -35,16 +35,16 @@ class Parameter(NamedTuple):
 
     @property
     def is_block(self) -> bool:
-        """Whether the parameter receives an element of the call rather than an attribute."""
+        """Whether the parameter receives an element of the call instead of an attribute."""
         return self.name.startswith("*")
 
 
 @lru_cache(maxsize=2000)
 def parse_parameters(text: str) -> tuple[Parameter, ...]:
-    """Return the parameters that the ``params`` of a macro declare.
+    """Return the parameters that the ``params`` of a macro declares.
 
     Raises:
-        Fault: XAC412 for a default whose quotes do not match.
+        Fault: XAC412 for a default with a quote that is never closed.
     """
     parameters: list[Parameter] = []
     with_sign: dict[str, Parameter] = {}
@@ -66,7 +66,7 @@ def parse_parameters(text: str) -> tuple[Parameter, ...]:
         else:
             match = bare.match(text, at)
             if match is None:
-                break  # only blanks are left
+                break  # only blanks remain
             at = match.end()
             parameter = Parameter(match["name"], None, False, match.start("name"), match.end("name"))
         parameters.append(parameter)
@@ -75,10 +75,10 @@ def parse_parameters(text: str) -> tuple[Parameter, ...]:
 
 
 def _ends_of_words(text: str) -> list[int]:
-    """Return where the word that begins at each offset ends, or -1 where a quote in it is never closed.
+    """Return the end of the word that begins at each offset, or -1 for an unclosed quote.
 
-    A word ends at a blank, but may contain blanks in quotes. As in ros/xacro, a quote is closed by the first quote of
-    its kind after which the word can end: ``'''`` is one word, a quote in quotes.
+    A word ends at a blank, but may contain quoted blanks. As in ros/xacro, a quote is closed by the first quote of the
+    same kind after which the word can end. For example, ``'''`` is one word: a quote in quotes.
     """
     ends = [len(text)] * (len(text) + 1)
     behind = {"'": -1, '"': -1}  # the end of a word that continues after the nearest closing quote
@@ -98,11 +98,11 @@ def _ends_of_words(text: str) -> list[int]:
 
 
 class Macro:
-    """A macro.
+    """A macro with its parameters and its body.
 
     Attributes:
         name: the name of the macro.
-        parameters: its parameters, in the order of their declaration.
+        parameters: the parameters, in the order of their declaration.
         known: the names of the parameters.
         body: the element that contains the body.
     """
@@ -117,7 +117,10 @@ class Macro:
 
 
 class MacroTable:
-    """The macros of a scope, with the enclosing table; the table of a namespace has none."""
+    """The macros of a scope, with the table of the enclosing scope.
+
+    The table of a namespace has no enclosing table.
+    """
 
     __slots__ = ("_entries", "_parent")
 
@@ -126,11 +129,11 @@ class MacroTable:
         self._entries: dict[str, Macro | MacroTable] = {}
 
     def define(self, name: str, entry: Macro | MacroTable) -> None:
-        """Bind a name to a macro or to the table of a namespace, replacing an earlier one."""
+        """Bind a name to a macro or to the table of a namespace, replacing an earlier binding."""
         self._entries[name] = entry
 
     def find(self, name: str) -> Macro | MacroTable | None:
-        """Return the entry of a name in this table or the enclosing ones; None if there is none."""
+        """Return the macro or table bound to a name in this table or the enclosing ones, or None."""
         table: MacroTable | None = self
         while table is not None:
             entry = table._entries.get(name)

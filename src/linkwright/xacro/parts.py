@@ -1,13 +1,13 @@
-"""Expansion of the valid parts of a description that has mistakes.
+"""The expansion of the valid parts of a description that has errors.
 
-`linkwright.xacro.expand` stops at the first mistake after which nothing is reliable. An editor needs more: here, a
-tag that fails is left out, and the walk continues. Two rules keep the result correct:
+`linkwright.xacro.expand` stops at the first error after which the result is not reliable. An editor needs more. Here,
+a tag that fails is left out, and the walk continues. Two rules keep the result correct:
 
-- **Gaps are known.** An element whose attribute or text failed, or in which a tag was left out, is not part of the
-  result; neither is the enclosing element.
-- **Consequences are not reported.** A part that is left out may have defined names. From there on, a missing name
-  is not a mistake, and a value may differ from the intended one: each part that depends on one is silently left
-  out, too.
+- **Gaps are known.** An element is left out of the result if its attribute or text failed, or if a tag inside was
+  left out. The enclosing elements are left out, too.
+- **Consequences are not reported.** A part that is left out may have defined names. After this part, a missing name
+  is not an error, and a value may differ from the intended one. Therefore, each part that depends on a name or value
+  is also left out, without a message.
 """
 
 from __future__ import annotations
@@ -42,18 +42,18 @@ _OUTER_PROPERTY = lazy_pattern(r"""<xacro:property\s[^>]*?\bscope\s*=""")
 
 
 def expand_parts(inputs: Inputs, error: LinkwrightError) -> Expansion:
-    """Expand a description without the parts that have mistakes.
+    """Expand a description without the parts that have errors.
 
     Args:
         inputs: the inputs of the expansion.
         error: the error of the complete expansion.
 
     Returns:
-        An expansion whose `problems` describe the mistakes. Its document contains those elements of the root that would
+        An expansion whose `problems` describe the errors. Its document contains those children of the root that would
         be the same in the complete expansion.
 
     Raises:
-        LinkwrightError: `error`, if there is no result because the file is not XML or the expansion must be stopped.
+        LinkwrightError: `error`, if there is no result because the file is not XML or because the walk had to stop.
     """
     if any(map(is_final, error.diagnostics)):
         raise error
@@ -75,7 +75,7 @@ def expand_parts(inputs: Inputs, error: LinkwrightError) -> Expansion:
 
 
 class _LeftOutError(Exception):
-    """Raised when a tag depends on a part that was left out before."""
+    """Raised when a tag depends on a part that was left out."""
 
 
 class _PartsExpander(Expander):
@@ -83,7 +83,7 @@ class _PartsExpander(Expander):
 
     Attributes:
         trusted: whether all names still have the values of the complete expansion.
-        remarks_to_trust: the number of the session's warnings that were recorded while they did; None for all.
+        remarks_to_trust: the number of warnings that the session recorded while `trusted` was true, or None for all.
     """
 
     def __init__(self, session: Session) -> None:
@@ -97,7 +97,7 @@ class _PartsExpander(Expander):
         self._reported_definitions: set[tuple[str, str]] = set()
 
     def attributes(self, node: Element, scope: Scope) -> dict[str, str]:
-        """Return the attributes that could be evaluated, with a gap mark if others could not."""
+        """Return the attributes that could be evaluated, and a gap mark if others could not."""
         before = self._failures
         result = super().attributes(node, scope)
         if self._failures > before or not self.trusted:
@@ -109,14 +109,14 @@ class _PartsExpander(Expander):
         return result
 
     def blocks(self, node: Element, scope: Scope, macros: MacroTable) -> Element:
-        """Expand the elements inside a call; a call that lacks some of them is left out."""
+        """Return the expanded content of a macro call; a call with a gap in its content is left out."""
         container = super().blocks(node, scope, macros)
         if _GAP in container.attributes:
             raise _LeftOutError
         return container
 
     def note(self, fault: Fault) -> None:
-        """Record a mistake in an attribute or text."""
+        """Record the error of an attribute or text, unless an earlier gap may have caused it."""
         self._failures += 1
         diagnostic = self._diagnostic(fault)
         if self.trusted or diagnostic.code in _TRUE_BY_THEMSELVES or is_final(diagnostic):
@@ -130,7 +130,7 @@ class _PartsExpander(Expander):
         return Text(_GAP, node.source, node.offset)
 
     def _leaving_out(self, directive: Directive) -> Directive:
-        """Return a directive that marks a gap if it fails."""
+        """Return a directive that leaves a gap mark in the parent if the given directive fails."""
 
         def expand(expander: Expander, site: Site) -> None:
             session, nesting = self.session, self._nesting
@@ -173,7 +173,7 @@ class _PartsExpander(Expander):
             self.remarks_to_trust = len(self.session.diagnostics)
 
     def _may_define_names(self, node: Element) -> bool:
-        """Return whether a tag that is left out might have defined a name for later tags."""
+        """Return whether a tag that is left out might have defined a name that later tags use."""
         tags = {element.tag for element in node.walk()}
         if tags & _DECLARATIONS:
             return True
@@ -181,26 +181,29 @@ class _PartsExpander(Expander):
         return (calls or "xacro:call" in tags) and self._macros_define_outside()
 
     def _macros_define_outside(self) -> bool:
-        """Return whether a macro in the files read so far defines properties of its callers."""
+        """Return whether a macro in the files read so far defines properties in its caller's scope."""
         for path in self.session.dependencies:
             try:
                 source = self.session.read(path).source
             except LinkwrightError:
-                continue  # a YAML file, or a missing one
+                continue  # a YAML file, or a file that is missing
             if source is not None and _OUTER_PROPERTY.search(source.text):
                 return True
         return False
 
 
 def _depends_on_values(node: Element) -> bool:
-    """Return whether a tag's effect, or a macro call's content, depends on properties or arguments."""
+    """Return whether the effect of a tag depends on the values of properties or arguments.
+
+    Definitions do not depend on values until they are used.
+    """
     if node.tag not in DIRECTIVES or node.tag in _DEFINITIONS:
         return False
     return any("$" in _FIXED.sub("", value) for value in node.attributes.values())
 
 
 def _without_gaps(document: Document) -> Document:
-    """Return the document with only those elements of the root that have no gap."""
+    """Return the document with only those children of the root that have no gap."""
     root = document.root
     root.attributes.pop(_GAP, None)
     root.children = [child for child in root.children if not (isinstance(child, Element) and _has_gap(child))]

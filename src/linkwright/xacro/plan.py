@@ -1,12 +1,11 @@
-"""Plans: the steps of expanding an element, computed once for each source element.
+"""Plans: the steps that expand an element, computed once for each source element.
 
-Most of a description does not depend on anything: an element without a dollar sign and without xacro tags is
-unchanged with all its content. Its plan marks it as such, and the walk copies it. For any other element, the plan
-lists the attributes to evaluate and, in reading order, the steps for its children. Adjacent unchanged nodes form
-one step.
+Most of a description does not depend on values: an element without a dollar sign and without xacro tags is unchanged,
+including its content. The plan of such an element marks it as unchanged, and the walk copies it. For any other
+element, the plan lists the attributes to evaluate and the steps for its children in document order. Adjacent
+unchanged nodes form one step.
 
-The text of an element shows whether it is unchanged: if the text has no sign of the language, the element is not
-searched.
+If the text of an element has no dollar sign and no xacro prefix, the element is unchanged and is not searched.
 """
 
 from __future__ import annotations
@@ -39,8 +38,8 @@ class Run:
 
     Attributes:
         nodes: the elements, with the texts and comments between them.
-        size: the number of elements that they count as.
-        height: their maximum nesting depth.
+        size: the number of elements for which the nodes count.
+        height: the maximum nesting depth of the elements.
     """
 
     __slots__ = ("height", "nodes", "size")
@@ -55,9 +54,9 @@ class Plan(CachedText):
     """The plan of one element.
 
     Attributes:
-        attributes: the attributes of the result as they are written.
+        attributes: the attributes of the result, with their unevaluated values.
         evaluated: the names of the attributes to be evaluated or counted.
-        size: the number of elements, including this one, if it is unchanged, else 0.
+        size: the number of elements in an unchanged element, including itself, else 0.
         height: the maximum nesting depth.
         steps: the steps for the children, in order, each with its kind, its object and a flag. For TAG, the flag is
             whether any node follows; for SWITCH, whether comments must be evaluated from here. None before the first
@@ -75,14 +74,17 @@ class Plan(CachedText):
 
 
 def plan_document(document: Document) -> None:
-    """Record where the root of an unchanged document ends, so that its plan can be derived from its text."""
+    """Record where the root of a document ends, so that its plan can be derived from its text.
+
+    Documents with a document type declaration, or created by a program, are skipped.
+    """
     root = document.root
     if root.plan is None and document.doctype is None and document.source is not None:
         root.plan = len(document.source.text)
 
 
 def plan_of(node: Element) -> Plan:
-    """Return the plan of an element."""
+    """Return the plan of an element, which is computed on first use."""
     plan = node.plan
     if not isinstance(plan, Plan):
         plan = node.plan = _worked_out(node, plan if isinstance(plan, int) else _UNKNOWN, 0)
@@ -90,7 +92,7 @@ def plan_of(node: Element) -> Plan:
 
 
 def steps_of(node: Element) -> list[Step]:
-    """Return the steps for the children of an element."""
+    """Return the steps for the children of an element, which are computed on first use."""
     plan = plan_of(node)
     if plan.steps is None:
         plan.steps = _Children(node.children, _UNKNOWN, 0).steps
@@ -98,7 +100,7 @@ def steps_of(node: Element) -> list[Step]:
 
 
 def _worked_out(node: Element, end: int, depth: int) -> Plan:
-    """Return the plan of an element, given the offset where its text ends, if it is known."""
+    """Return a new plan of an element; `end` is the offset after its text, if known."""
     plan = Plan(node.attributes)
     children = _Children(node.children, end, depth)
     plan.steps = children.steps
@@ -132,8 +134,8 @@ class _Children:
     Attributes:
         steps: the steps.
         come_out: whether all children are unchanged.
-        size: their total number of elements in that case.
-        height: their maximum nesting depth.
+        size: the total number of elements in unchanged children.
+        height: the maximum nesting depth of the children.
     """
 
     def __init__(self, children: list[Node], end: int, depth: int) -> None:
@@ -141,7 +143,7 @@ class _Children:
         self.come_out = True
         self.size = self.height = 0
         self._kept: list[Node] = []  # the unchanged nodes since the last step
-        self._since_element = 0  # how many of them follow the last element
+        self._since_element = 0  # the number of these nodes after the last element
         self._run_size = self._run_height = 0
         self._plan(children, end, depth)
 
@@ -215,7 +217,10 @@ class _Children:
 
 
 def _inner_plan(node: Element, stop: int, depth: int) -> Plan | None:
-    """Return the plan of an ordinary child whose text ends at an offset; None if it is too deep for now."""
+    """Return the plan of an ordinary child, or None if it is nested too deeply for now.
+
+    `stop` is the offset after the text of the child.
+    """
     inner = node.plan
     if isinstance(inner, Plan):
         return inner
@@ -234,10 +239,9 @@ def _inner_plan(node: Element, stop: int, depth: int) -> Plan | None:
 
 
 def _size_of_plain(text: str) -> int:
-    """Return the number of elements in an element's text without signs of the language, else 0.
+    """Return the number of elements in the text of an unchanged element, or 0 if it may change.
 
-    Texts that may contain such signs are refused: those with character references or comments, and those that are long
-    enough to be charged.
+    The result is also 0 for a text with character references or comments, and for a text long enough to be charged.
     """
     if any(sign in text for sign in _SIGNS):
         return 0

@@ -43,7 +43,7 @@ class Packages(Protocol):
     """The interface for finding share folders, which `linkwright.packages.PackageFinder` implements."""
 
     def share(self, name: str) -> Path:
-        """Return the share folder of a package; raises `LinkwrightError` if there is no such package."""
+        """Return the share folder of a package; raises `LinkwrightError` if there is none."""
         ...
 
 
@@ -54,17 +54,17 @@ class Session:
     """The state of one expansion, apart from the tree.
 
     Attributes:
-        arguments: name -> value of every argument passed or declared so far.
+        arguments: the value of every argument passed or declared so far, by name.
         known_arguments: the names of the arguments that the files declare or use.
-        limits: the bounds of the expansion.
+        limits: the limits of the expansion.
         budget: the remaining budget.
-        file: the file being processed; relative paths start from its folder.
+        file: the file being processed, whose folder is the base of relative paths.
         frame: the innermost macro call or include being processed, or None.
-        place: the element or text being processed, which warnings point to.
+        place: the element or text being processed, which is the location of warnings.
         attribute: the attribute of `place` that is being evaluated, or None.
-        resolving: the nested properties being evaluated, outermost first.
-        dependencies: the files read so far, the main file first.
-        root_dir: the folder that relative paths start from; empty for the current folder.
+        resolving: the names of the nested properties being evaluated, outermost first.
+        dependencies: the files read so far, starting with the main file.
+        root_dir: the base of relative paths; empty for the current folder.
         diagnostics: the warnings so far.
     """
 
@@ -97,7 +97,7 @@ class Session:
         self.globals = Scope(None, self, symbols.global_names(self))
 
     def close(self) -> None:
-        """Release all scopes, which refer to the session, so that unused objects are freed immediately."""
+        """Clear all scopes, which refer to the session, so that memory is freed immediately."""
         self.globals.values.clear()
         del self.globals
 
@@ -107,16 +107,16 @@ class Session:
         """Return the value of a text in a scope.
 
         Raises:
-            Fault: if it has none.
+            Fault: if the evaluation fails.
         """
         template = templates.get(text) or compile_template(text)
         return template.evaluate(scope)
 
     def evaluate_text(self, text: str, scope: Scope) -> str:
-        """Return the text that is written for a text with expressions in a scope.
+        """Return the value of a text in a scope as the text that xacro writes.
 
         Raises:
-            Fault: if it has no value.
+            Fault: if the evaluation fails.
         """
         template = templates.get(text) or compile_template(text)
         value = template.evaluate(scope)
@@ -127,10 +127,10 @@ class Session:
         return self.written(text, value)
 
     def written(self, text: str, value: Any) -> str:
-        """Return the text that is written for the value of an expression.
+        """Return the text that xacro writes for the value of a text with expressions.
 
         Raises:
-            Fault: if XML cannot represent it, or it is too long.
+            Fault: if XML cannot represent the result, or if it is too long.
         """
         if value.__class__ is str:
             if not value.isprintable():
@@ -144,7 +144,7 @@ class Session:
             ) from None
 
     def changes(self, text: str) -> bool:
-        """Return whether evaluating a text may change a value, as ``${items.pop(0)}`` does."""
+        """Return whether the evaluation of a text may change a value, as ``${items.pop(0)}`` does."""
         return compile_template(text).changes
 
     # names
@@ -174,7 +174,7 @@ class Session:
         return fault
 
     def nearest_attribute(self, owner: Any, name: str) -> Phrase | None:
-        """Return a hint for an attribute name that a value does not have, or None."""
+        """Return a hint with a similar name for an attribute that a value does not have, or None."""
         candidates: Iterable[Any] = ()
         if isinstance(owner, Module):
             candidates = owner.values
@@ -188,7 +188,7 @@ class Session:
         """Return the value of an argument.
 
         Raises:
-            Fault: XAC211 if it is neither declared nor passed.
+            Fault: XAC211 if the argument is neither declared nor passed.
         """
         value = self.arguments.get(name) if isinstance(name, str) else None
         if value is None:
@@ -203,7 +203,7 @@ class Session:
         """Return the share folder of a package.
 
         Raises:
-            Fault: if no such package is found.
+            Fault: if the package is not found.
         """
         known = self._known_packages.get(name)
         if known is None:
@@ -230,11 +230,11 @@ class Session:
 
     @property
     def working_directory(self) -> str:
-        """The working directory, for ``$(cwd)``."""
+        """The working directory, which is the value of ``$(cwd)``."""
         return os.path.abspath(self.root_dir)  # noqa: PTH100 - a string is needed
 
     def on_disk(self, path: str) -> str:
-        """Return the path on disk for a path in the description."""
+        """Return the path on disk for a path that may be relative to `root_dir`."""
         return os.path.join(self.root_dir, path)  # noqa: PTH118 - kept as it is written
 
     def read(self, path: str) -> Document:
@@ -246,18 +246,18 @@ class Session:
         return document
 
     def absolute(self, name: str) -> str:
-        """Return a file name relative to the file being processed, with that file's folder prepended."""
+        """Return a relative file name with the folder of the file being processed prepended."""
         return os.path.join(os.path.dirname(self.file), name)  # noqa: PTH118, PTH120 - kept as it is written
 
     def depends_on(self, file: str) -> None:
-        """Record that a file was read."""
+        """Record that a file was read, as a dependency of the result."""
         self.dependencies.setdefault(file, None)
 
     def load_yaml(self, name: str) -> Any:
         """Return the value of a YAML file whose name is relative to the file being processed.
 
         Raises:
-            Fault: XAC506 if there is no such file or it is not YAML.
+            Fault: XAC506 if the file cannot be read or is not YAML.
         """
         from linkwright.xacro.expressions import yamldata
 
@@ -291,7 +291,7 @@ class Session:
     # findings
 
     def warn_of_unused_arguments(self) -> None:
-        """Warn about arguments that were passed but that no file declares or uses; they are probably misspelt."""
+        """Warn about passed arguments that no file declares or uses, which are probably misspelt."""
         self.place = self.frame = None
         for name in self.arguments:
             if name not in self.known_arguments:
@@ -312,18 +312,18 @@ class Session:
         severity: Severity = Severity.WARNING,
         called: str | None = None,
     ) -> Diagnostic | None:
-        """Record a finding that does not stop the expansion, at most once for each place.
+        """Record a finding that does not stop the expansion, at most once for each location.
 
         Args:
-            code: the diagnostic's code.
-            message: its message.
-            span: its place; None for the text that is being evaluated.
+            code: the code of the diagnostic.
+            message: the message of the diagnostic.
+            span: the location, or None for that of the text being evaluated.
             hint: how to fix the problem.
-            severity: its severity.
-            called: the function that the finding is about, which the text being evaluated calls.
+            severity: the severity of the diagnostic.
+            called: the function that the finding is about, if the text being evaluated calls one.
 
         Returns:
-            The finding; None if it was recorded before.
+            The finding, or None if it was recorded before.
         """
         place = self.place
         if span is None and place is not None:
@@ -337,7 +337,7 @@ class Session:
         return diagnostic
 
     def withdraw(self, diagnostic: Diagnostic) -> None:
-        """Remove a finding that a later definition resolved."""
+        """Remove a recorded finding that a later definition made obsolete."""
         self.diagnostics.remove(diagnostic)
         self._reported.discard((diagnostic.code, diagnostic.message, diagnostic.span))
 
@@ -382,7 +382,7 @@ class Session:
         return warning
 
     def reporter(self, name: str, code: str, severity: Severity) -> Callable[..., str]:
-        """Create ``xacro.message``, ``xacro.warning`` or ``xacro.error``, which show a message to the user."""
+        """Return the function that shows messages: ``xacro.message``, ``warning`` or ``error``."""
 
         def report(*words: Any, **_options: Any) -> str:
             text = foreign(" ".join(map(sandbox.as_text, words))) or phrase("here")
@@ -392,7 +392,7 @@ class Session:
         return report
 
 
-# Not compiled here: nearly every value is printable, and has none of these.
+# Not compiled here because nearly every value is printable and has none of these characters.
 _NOT_XML = "[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]"
 
 
@@ -437,15 +437,15 @@ class Inputs(NamedTuple):
     overlay: Overlay | None = None
 
     def session(self) -> Session:
-        """Return a session in its initial state."""
+        """Return a new session for these inputs."""
         return Session(self.name, self.arguments, self.packages, self.limits, self.root_dir, self.overlay)
 
 
 def main_document(session: Session, text: str | None = None) -> Document:
-    """Return the document of a session's file, or of a text that replaces it.
+    """Return the parsed document of a session's file, or of a text that replaces it.
 
     Raises:
-        LinkwrightError: if it cannot be read, or is not XML.
+        LinkwrightError: if the file cannot be read, or is not XML.
     """
     try:
         document = session.read(session.file) if text is None else parse(text, session.file)

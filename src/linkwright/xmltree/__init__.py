@@ -1,4 +1,4 @@
-"""XML with positions: parsing, traversal and writing."""
+"""XML with source positions: parsing, traversal and writing."""
 
 from linkwright.xmltree.nodes import Comment, Document, Element, Node, ProcessingInstruction, Text
 from linkwright.xmltree.reader import Overlay, parse, parse_file

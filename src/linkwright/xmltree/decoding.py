@@ -1,7 +1,7 @@
-"""Decoding of the bytes of a file to text.
+"""The decoding of the bytes of a file to text.
 
-A text that is valid UTF-8 is read as UTF-8 regardless of its XML declaration, as in ros/xacro. Only a text that is
-not valid UTF-8 is read in the encoding that it declares.
+A file that is valid UTF-8 is read as UTF-8 regardless of its XML declaration, as in ros/xacro. Any other file is read
+in the encoding that it declares.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from linkwright.loading.lean_dataclasses import NamedTuple
 UTF_8 = "utf-8"
 _LONGEST_BEGINNING = 100
 """More characters than a pointer is known by."""
-_DECLARED = rb"""^\s*<\?xml[^>]*?\bencoding\s*=\s*["']([A-Za-z][A-Za-z0-9._-]*)["']"""  # compiled if needed
+_DECLARED = rb"""^\s*<\?xml[^>]*?\bencoding\s*=\s*["']([A-Za-z][A-Za-z0-9._-]*)["']"""  # compiled only when needed
 _BYTE_ORDER_MARKS = (
     (codecs.BOM_UTF8, UTF_8),
     (codecs.BOM_UTF32_LE, "utf-32-le"),
@@ -26,7 +26,7 @@ _BYTE_ORDER_MARKS = (
 )
 _UTF_16_OF_XML = (b"<\0", b"\0<")
 """How XML in UTF-16 begins where the byte order mark is missing."""
-_LIKE_GBK = rb"(?:[\x00-\x7f]|[\xa1-\xf7][\xa1-\xfe])+"  # compiled if needed
+_LIKE_GBK = rb"(?:[\x00-\x7f]|[\xa1-\xf7][\xa1-\xfe])+"  # compiled only when needed
 """A text in which bytes beyond ASCII come in pairs, as in GBK and other encodings of East Asia."""
 _BEGINNING_OF_BINARY = 1024
 """Images, archives, programs and meshes have a zero among this many bytes."""
@@ -43,17 +43,17 @@ def decode(data: bytes, name: str) -> str:
     """Return the text of a file without its byte order mark.
 
     Raises:
-        LinkwrightError: XML104 if the bytes are not text in the file's encoding.
+        LinkwrightError: see `decoded`.
     """
     return decoded(data, name).text
 
 
 def decoded(data: bytes, name: str) -> Decoded:
-    """Return the text of bytes, with its encoding.
+    """Return the text and the encoding of a file.
 
     Raises:
-        LinkwrightError: XML104 as for `decode`, or XML106 if the file is a Git LFS pointer whose content was not
-            fetched.
+        LinkwrightError: XML104 if the bytes are not text in the file's encoding, or XML106 if the file is a Git LFS
+            pointer whose content was not fetched.
     """
     _refuse_pointer(data, name)
     for mark, encoding in _BYTE_ORDER_MARKS:
@@ -73,7 +73,7 @@ def decoded(data: bytes, name: str) -> Decoded:
 
 
 def unsaved(text: str, name: str) -> Decoded:
-    """Return a text that is not in a file, such as one that an editor has not yet saved.
+    """Return a text that is not in a file, such as an unsaved one, with its encoding.
 
     Raises:
         LinkwrightError: XML106, as for a file.

@@ -1,4 +1,4 @@
-"""Error messages in plain words for texts that are not well-formed XML."""
+"""Plain error messages for texts that are not well-formed XML."""
 
 from __future__ import annotations
 
@@ -55,10 +55,10 @@ _LESS_HINT = phrase("close the quotes of the attribute before it, or write '&lt;
 def syntax_error(
     source: SourceText, error: ExpatError, offset: int, open_elements: list[tuple[str, int]]
 ) -> LinkwrightError:
-    """Return the error for a mistake that expat found.
+    """Return the error for a syntax error that expat found.
 
     Args:
-        source: the text being read.
+        source: the text being parsed.
         error: expat's error.
         offset: the character offset at which expat stopped.
         open_elements: the name and offset of each element that is not yet closed, outermost first.
@@ -147,7 +147,7 @@ class _Fault:
         return self._diagnostic("XML206", _words(error))
 
     def _template(self) -> Diagnostic | None:
-        """Return the error for a template with placeholders that XML forbids, or None."""
+        """Return the error for a template whose placeholders are not valid XML, or None."""
         for pattern, language, hint in _TEMPLATES:
             tag = pattern.search(self._text)
             if tag is not None and tag.start() <= self._offset:
@@ -217,8 +217,7 @@ class _Fault:
         begin = len(self._text) - len(self._text.lstrip())
         return self._diagnostic("XML206", phrase("this is not XML"), at=begin, hint=hint)
 
-    # --- tokens that are not well-formed: common mistakes, if they match
-    # ------------------------------------------------
+    # --- invalid tokens: recognized common mistakes -------------------------------------------------------------------
 
     def _invalid_token(self) -> Diagnostic:
         for usual_mistake in (
@@ -245,12 +244,12 @@ class _Fault:
 
     @property
     def _character(self) -> str:
-        """The character at which expat stopped; empty at the end."""
+        """The character at which expat stopped; empty at the end of the text."""
         return self._text[self._offset : self._offset + 1]
 
     @property
     def _before(self) -> str:
-        """The text directly before this character."""
+        """The text directly before the character at which expat stopped."""
         return self._text[max(0, self._offset - _AS_FAR_BACK) : self._offset]
 
     def _unfinished_merge(self) -> Diagnostic | None:

@@ -1,9 +1,9 @@
-"""A formatter for XML: it changes indentation, spaces in tags and blank lines, and nothing else.
+"""A formatter for XML that only changes indentation, spaces in tags, and blank lines.
 
-These stay as they are: the order of attributes, quotes, entities, comments, processing instructions, line ends,
-elements with text, and values that contain line ends. An element that is written on one line stays on one line if it
-fits. Attributes keep their lines, and comments stay beside the element on their line. Several blank lines become one.
-So a robot expands to the same bytes before and after.
+Everything else is unchanged: the order of attributes, quotes, entities, comments, processing instructions, line
+endings, elements with text, and values that contain line endings. An element on one line stays on one line if it
+fits. Attributes stay on their lines, and a comment stays beside the element on its line. Several blank lines become
+one. Therefore, a robot expands to the same bytes before and after formatting.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _SPACED_END, _TIGHT_END = lazy_pattern(r"[^\S\n]/>"), lazy_pattern(r"\S/>")
 
 
 class TextEdit(NamedTuple):
-    """Lines `first` to `last` (exclusive, from 0) of a text become `lines`."""
+    """A replacement of the lines `first` to `last` (exclusive, from 0) of a text by `lines`."""
 
     first: int
     last: int
@@ -33,12 +33,12 @@ class TextEdit(NamedTuple):
 
 @dataclass(slots=True)
 class _Node:
-    """A token with the content of its element.
+    """A token, with the content of its element.
 
     Attributes:
         token: the start tag of an element, or any other token.
-        children: the nodes of an element's content, texts among them.
-        closing: the end tag of an element; None for ``<a/>`` and other tokens.
+        children: the nodes in an element, including texts.
+        closing: the end tag of an element, or None for ``<a/>`` and other tokens.
     """
 
     token: Token
@@ -47,17 +47,20 @@ class _Node:
 
     @property
     def end(self) -> int:
-        """The offset behind it."""
+        """The offset after the node."""
         return self.token.end if self.closing is None else self.closing.end
 
     @property
     def is_blank(self) -> bool:
-        """Whether it is a text of blanks."""
+        """Whether the node is a text of blanks."""
         return self.token.kind is Kind.TEXT and not self.token.text.strip()
 
     @property
     def is_verbatim(self) -> bool:
-        """Whether blanks in its content may matter: there is other text, or nothing else."""
+        """Whether blanks in the content may matter, so that the content must not change.
+
+        This is so if the content has other text or only blanks, or if the element has the attribute ``xml:space``.
+        """
         kinds = (Kind.TEXT, Kind.CDATA)
         return (
             all(child.is_blank for child in self.children)
@@ -67,15 +70,16 @@ class _Node:
 
 
 def format_text(text: str, name: str, style: Style = Style()) -> str:  # noqa: B008 - a tuple of numbers
-    """Return a text of XML in a uniform format; the same text again for a formatted one.
+    """Return an XML text in a uniform format; a formatted text is returned unchanged.
 
     Args:
-        text: the text, with the line ends and the byte order mark of its file.
+        text: the text, with the line endings and the byte order mark of its file.
         name: the name of the text in messages.
-        style: the options.
+        style: the style options.
 
     Raises:
-        LinkwrightError: it is not XML; see `linkwright.xmltree.parse`.
+        LinkwrightError: if the text is not XML (see `linkwright.xmltree.parse`), or XML303 if formatting would change
+            its meaning.
     """
     before = parse(text, name)
     mark = _BOM if text.startswith(_BOM) else ""
@@ -90,12 +94,13 @@ def format_text(text: str, name: str, style: Style = Style()) -> str:  # noqa: B
 
 
 def changes(before: str, after: str, lines: tuple[int, int] | None = None) -> list[TextEdit]:
-    """Return the changed lines between two texts.
+    """Return the edits of lines that turn one text into another.
 
     Args:
-        before: the text.
-        after: the text it becomes.
-        lines: the first and the last (exclusive) line, from 0, that a change must touch; None for all changes.
+        before: the original text.
+        after: the new text.
+        lines: the first and the last line (exclusive, counted from 0) of the range that an edit must touch, or None for
+            all edits.
     """
     old, new = before.splitlines(keepends=True), after.splitlines(keepends=True)
     matcher = difflib.SequenceMatcher(None, old, new, autojunk=False)
@@ -107,7 +112,7 @@ def changes(before: str, after: str, lines: tuple[int, int] | None = None) -> li
 
 
 def with_changes(before: str, edits: Sequence[TextEdit]) -> str:
-    """Return a text with some of its lines changed."""
+    """Return a text with edits of its lines applied."""
     lines = before.splitlines(keepends=True)
     for edit in sorted(edits, reverse=True):
         lines[edit.first : edit.last] = edit.lines
@@ -115,7 +120,7 @@ def with_changes(before: str, edits: Sequence[TextEdit]) -> str:
 
 
 def _nodes(text: str) -> list[_Node]:
-    """Return the nodes of a well-formed text."""
+    """Return the top-level nodes of a well-formed text."""
     top: list[_Node] = []
     parents: list[_Node] = []
     for token in tokens(text):
@@ -130,12 +135,12 @@ def _nodes(text: str) -> list[_Node]:
 
 
 class _Layout:
-    """Writes nodes.
+    """The writer of nodes in a uniform format.
 
     Args:
-        text: the text that they are from.
-        style: the options.
-        newline: the line end to write.
+        text: the text of the nodes.
+        style: the style options.
+        newline: the line ending to write.
     """
 
     def __init__(self, text: str, style: Style, newline: str) -> None:
@@ -146,11 +151,14 @@ class _Layout:
         self._whole = " />" if spaced > others else "/>"
 
     def document(self, nodes: Sequence[_Node]) -> str:
-        """Return the text of a document."""
+        """Return the formatted text of a document."""
         return self._lines(nodes, 0).strip("\r\n") + self._newline
 
     def _lines(self, nodes: Sequence[_Node], depth: int) -> str:
-        """Return nodes on lines of their own, each line with its end, and comments beside what they are beside."""
+        """Return nodes on lines of their own, each with its line ending.
+
+        A comment that is beside another node in the original stays beside it.
+        """
         parts: list[str] = []
         before: _Node | None = None
         blanks = ""
@@ -171,7 +179,7 @@ class _Layout:
 
     @staticmethod
     def _is_beside(before: _Node, node: _Node) -> bool:
-        """Return whether two nodes on one line belong there: a comment, and what it is about."""
+        """Return whether two adjacent nodes stay on one line, because one is a comment on the other."""
         return Kind.COMMENT in (before.token.kind, node.token.kind) and Kind.INSTRUCTION not in (
             before.token.kind,
             node.token.kind,
@@ -194,7 +202,7 @@ class _Layout:
         return start + self._newline + inner + self._margin(depth) + end
 
     def _line(self, node: _Node) -> str:
-        """Return a node that is written on one line."""
+        """Return a node with its content on one line."""
         if node.token.kind is not Kind.START:
             return node.token.text
         start = self._one_line(node.token)
@@ -207,7 +215,10 @@ class _Layout:
         return f"{start}{content}</{node.closing.name}>"
 
     def _beside(self, nodes: Sequence[_Node]) -> Iterator[str]:
-        """Yield the nodes of a line; blanks around comments become one space, others are left out."""
+        """Yield the texts of nodes for one line.
+
+        Blanks beside a comment become one space, and other blanks are left out.
+        """
         before: _Node | None = None
         has_blanks = False
         for node in nodes:
@@ -220,7 +231,10 @@ class _Layout:
             before, has_blanks = node, False
 
     def _start_tag(self, tag: Token, depth: int) -> str:
-        """Return a start tag; attributes keep their lines, and continue on the next one where a line is too long."""
+        """Return a formatted start tag.
+
+        Attributes stay on their lines. If a line becomes too long, its attributes continue on the next line.
+        """
         attributes = tag.attributes()
         margin = self._margin(depth)
         line = self._one_line(tag)
@@ -262,7 +276,10 @@ class _Layout:
 
     @staticmethod
     def _rows(tag: Token, attributes: Sequence[TokenAttribute]) -> list[list[TokenAttribute]]:
-        """Return the attributes by the lines they are on; the first row is beside the tag's name, and may be empty."""
+        """Return the attributes by line.
+
+        The first row is on the line of the tag's name, and may be empty.
+        """
         rows: list[list[TokenAttribute]] = [[]]
         at = tag.name_start + len(tag.name)
         for attribute in attributes:
@@ -285,7 +302,7 @@ def _top(document: Document) -> list[Node]:
 
 
 def _alike(some: Sequence[Node], others: Sequence[Node]) -> bool:
-    """Return whether nodes are equal except for texts of blanks."""
+    """Return whether two lists of nodes are equal, ignoring texts of blanks."""
     pairs = [([*some], [*others])]
     while pairs:
         left, right = ([node for node in nodes if not _is_blank(node)] for nodes in pairs.pop())

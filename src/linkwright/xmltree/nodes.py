@@ -1,16 +1,14 @@
-"""The nodes of an XML tree, and a context that reduces garbage collection while a tree is built.
+"""The nodes of an XML tree, and a context in which the garbage collector runs less often.
 
-Python's garbage collector runs less often while a tree is built.
-
-Reading and expanding create many small objects in a short time. Nearly all of them stay, and none form reference
-cycles that are garbage. The collector still searches them repeatedly, which costs up to a tenth of the time;
-occasionally, it searches every object of the program.
+Parsing and expanding create many small objects in a short time. Nearly all of them stay alive, and no reference
+cycles become garbage. The collector still searches them repeatedly, which takes up to a tenth of the time.
+Occasionally, it searches every object of the program.
 """
 
 from __future__ import annotations
 
 import gc
-from _thread import allocate_lock  # threading.Lock, without importing the rest of threading
+from _thread import allocate_lock  # the lock of threading, without importing the rest of threading
 from collections.abc import Iterator
 
 from linkwright.diagnostics import SourceText, Span
@@ -25,7 +23,10 @@ _before = (0, 0, 0)
 
 
 class seldom_collected:  # noqa: N801 - it is called in a ``with`` statement, as a function is
-    """A context manager in which the garbage collector runs less often; new objects then count as old."""
+    """A context in which the garbage collector runs less often.
+
+    At the end, all objects become part of the oldest generation.
+    """
 
     def __enter__(self) -> None:
         global _active, _before  # noqa: PLW0603 - there is one collector for the whole process
@@ -41,14 +42,17 @@ class seldom_collected:  # noqa: N801 - it is called in a ``with`` statement, as
         with _depth_lock:
             _active -= 1
             if _active == 0:
-                if gc.get_freeze_count() == 0:  # new objects become old without a collection
+                if gc.get_freeze_count() == 0:  # move new objects to the oldest generation without a collection
                     gc.freeze()
                     gc.unfreeze()
                 gc.set_threshold(*_before)
 
 
 class Text:
-    """Character data. `cdata` marks a CDATA section, which is written as one and never evaluated."""
+    """Character data.
+
+    `cdata` marks a CDATA section, which is written as such and never evaluated.
+    """
 
     __slots__ = ("cdata", "data", "offset", "source")
 
@@ -83,17 +87,17 @@ class ProcessingInstruction:
 
 
 class Element:
-    """An element.
+    """An XML element.
 
     Attributes:
         tag: the name as written, with its prefix.
-        attributes: name as written -> value, in document order.
+        attributes: the values of attributes in document order, by name as written.
         children: elements, texts, comments and processing instructions, in document order.
-        source: the text that it was read from; None for an element created by a program.
-        offset: the character offset of its ``<`` in that text.
-        origin: what produced the element, if it was not simply read (the xacro room's chain of macro calls), else None.
-        plan: the xacro room's plan for expanding it, else None; to change an element of an expanded tree, set it to
-            None, also on the enclosing elements.
+        source: the text that contains the element, or None for an element created by a program.
+        offset: the character offset of the element's ``<`` in this text.
+        origin: the chain of macro calls and includes that produced the element in an expansion, else None.
+        plan: the plan of the xacro room for expanding the element, else None. Before changing an element of an expanded
+            tree, set it to None, also in all enclosing elements.
     """
 
     __slots__ = ("attributes", "children", "offset", "origin", "plan", "source", "tag")
@@ -118,7 +122,7 @@ class Element:
         return f"<{self.tag} {self.attributes}>"
 
     def elements(self, tag: str | None = None) -> Iterator[Element]:
-        """Yield the child elements, all or those with one tag, in document order."""
+        """Yield the child elements in document order, all or those with one tag."""
         for child in self.children:
             if isinstance(child, Element) and (tag is None or child.tag == tag):
                 yield child
@@ -143,15 +147,15 @@ class Element:
         return "".join(child.data for child in self.children if isinstance(child, Text))
 
     def span(self) -> Span | None:
-        """Return the place of the start tag's name with its ``<``; None for an element created by a program."""
+        """Return the location of the start tag's name with its ``<``; None if created by a program."""
         if self.source is None:
             return None
         return self.source.span(self.offset, self.offset + 1 + len(self.tag))
 
     def attribute_span(self, name: str) -> Span | None:
-        """Return the place of an attribute's value in the source, or else that of the element.
+        """Return the location of an attribute's value in the source, or else that of the element.
 
-        The attribute may be absent, or created by a program.
+        The location is that of the element if the attribute is absent or created by a program.
         """
         from linkwright.xmltree.positions import attribute_value_range
 
@@ -162,10 +166,10 @@ class Element:
 
 
 class CachedText:
-    """The cached text of an element that has been written.
+    """A cache for the text that is written for an element.
 
     Attributes:
-        written: the blanks before the text, and the text; None until it is written.
+        written: the blanks before the text, and the text, or None until the element is written.
     """
 
     __slots__ = ("written",)
@@ -178,13 +182,13 @@ _lock = allocate_lock()
 
 
 class LazyCopy(Element):
-    """An unchanged copy of an element, whose content is created on first access.
+    """An unchanged copy of an element that creates its attributes and children on first access.
 
-    Most of a description is only written again, for which the original suffices.
+    Most copies are only written again, for which the original suffices.
 
     Attributes:
-        original: the element that it is a copy of; None once the copy has its own attributes and children.
-        plan: holds the text of the original.
+        original: the copied element, or None once the copy has its own attributes and children.
+        plan: the plan of the original, which caches its text.
     """
 
     __slots__ = ("original",)
@@ -198,9 +202,9 @@ class LazyCopy(Element):
         self.original: Element | None = original
 
     def __getattr__(self, name: str) -> Any:
-        # Python calls this method when a slot is empty.
+        # Python calls this method if a slot is empty.
         if name in ("attributes", "children"):
-            with _lock:  # two threads with simultaneous access find the same children
+            with _lock:  # two threads must not create different children
                 original = self.original
                 if original is not None:
                     self.original = None
@@ -208,16 +212,19 @@ class LazyCopy(Element):
         return object.__getattribute__(self, name)
 
     def __reduce_ex__(self, protocol: SupportsIndex) -> Any:
-        """Support `copy` and `pickle`, which read the state."""
+        """Return the state for `copy` and `pickle`."""
         _ = self.children
         return super().__reduce_ex__(protocol)
 
 
 def _fill(copy: LazyCopy, original: Element) -> None:
-    """Give a copy its own attributes and children; texts and comments are shared."""
+    """Give a copy its own attributes and children.
+
+    Texts and comments are shared with the original.
+    """
     origin = copy.origin
     pending: list[tuple[Element, Element]] = [(copy, original)]
-    while pending:  # no recursion: elements may be nested more deeply than Python's calls
+    while pending:  # no recursion, because elements may be nested more deeply than Python's call stack allows
         made, original = pending.pop()
         while isinstance(original, LazyCopy) and original.original is not None:
             original = original.original
@@ -246,8 +253,8 @@ class Document:
         epilog: comments and processing instructions after the root.
         doctype: the document type declaration in the form in which it is written, or None.
         doctype_index: the number of nodes in the prolog before the document type declaration.
-        source: the text that it was read from; None for a document created by a program.
-        encoding: the encoding of the file; ``utf-8`` for any valid UTF-8 text, and for texts without a file.
+        source: the text of the document, or None for a document created by a program.
+        encoding: the encoding of the file, which is ``utf-8`` for any valid UTF-8 text and for texts without a file.
     """
 
     __slots__ = ("doctype", "doctype_index", "encoding", "epilog", "prolog", "root", "source")

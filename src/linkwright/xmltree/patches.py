@@ -1,4 +1,4 @@
-"""Minimal changes to an XML text: the places of elements in it, and replacements of ranges.
+"""Minimal changes to an XML text: the ranges of elements in the text, and their replacement.
 
 Everything outside the ranges, including formatting and comments, is unchanged.
 """
@@ -30,12 +30,12 @@ class Replacement:
 
 @dataclass(frozen=True, slots=True)
 class StartTag:
-    """A start tag in a text, by character offsets.
+    """A start tag in a text.
 
     Attributes:
-        start: the offset of its ``<``.
-        room: the offset after its last attribute, where another can be written.
-        end: the offset after its ``>``.
+        start: the character offset of the tag's ``<``.
+        room: the character offset after the last attribute, where another attribute can be inserted.
+        end: the character offset after the tag's ``>``.
         is_whole: whether the tag is the whole element, ``<a/>``.
     """
 
@@ -46,7 +46,7 @@ class StartTag:
 
 
 def apply(text: str, edits: Iterable[Replacement]) -> str:
-    """Return a text with replacements applied; they must not overlap."""
+    """Return a text with replacements applied; the replacements must not overlap."""
     parts, at = [], 0
     for edit in sorted(edits, key=lambda edit: (edit.start, edit.end)):
         parts += [text[at : edit.start], edit.text]
@@ -55,7 +55,7 @@ def apply(text: str, edits: Iterable[Replacement]) -> str:
 
 
 def escaped(value: str) -> str:
-    """Escape a value to be written between double quotes."""
+    """Return a value escaped for use between double quotes."""
     return "".join(_UNSAFE.get(character, character) for character in value)
 
 
@@ -65,15 +65,18 @@ def newline_of(text: str) -> str:
 
 
 def indentation(text: str, offset: int) -> str | None:
-    """Return the blanks before a place in its line; None if the line contains other characters there."""
+    """Return the blanks between the start of a line and an offset in it.
+
+    The result is None if the line has other characters there.
+    """
     before = text[text.rfind("\n", 0, offset) + 1 : offset]
     return before if not before.strip() else None
 
 
 def start_tag_of(element: Element) -> StartTag | None:
-    """Return the start tag of an element in its source.
+    """Return the start tag of an element in its source, or None if it is not written there.
 
-    The result is None if it is not written there, because it was created by a program or by an entity.
+    An element is not written in its source if a program or an entity created it.
     """
     if element.source is None:
         return None
@@ -88,7 +91,7 @@ def start_tag_of(element: Element) -> StartTag | None:
 
 
 def element_range(element: Element) -> tuple[int, int] | None:
-    """Return the character offsets of an element, from its ``<`` to after its last ``>``.
+    """Return the character offsets of an element's ``<`` and after its last ``>``.
 
     The result is None for an element created by a program.
     """
@@ -114,7 +117,7 @@ def element_range(element: Element) -> tuple[int, int] | None:
 
 
 def whole_lines(text: str, start: int, end: int) -> tuple[int, int]:
-    """Return a range extended to complete lines with line ends, unless the lines have other content."""
+    """Return a range extended to complete lines, unless the lines have other content."""
     line_start = text.rfind("\n", 0, start) + 1
     line_end = text.find("\n", end)
     line_end = len(text) if line_end < 0 else line_end + 1
@@ -123,7 +126,7 @@ def whole_lines(text: str, start: int, end: int) -> tuple[int, int]:
 
 
 def block(element: Element, indent: str = "", step: str = _STEP, newline: str = "\n") -> str:
-    """Return an element as it is written into a file, without a final line end.
+    """Return the text of an element for insertion into a file, without a final line ending.
 
     Args:
         element: an element created by a program, which contains either elements or text.
@@ -144,16 +147,16 @@ def block(element: Element, indent: str = "", step: str = _STEP, newline: str = 
 def inserted(
     owner: Element, new: Sequence[Element], *, after: Element | None = None, first: bool = False
 ) -> Replacement | None:
-    """Return the replacement that inserts elements into an element with the existing indentation.
+    """Return the replacement that inserts elements into an element with matching indentation.
 
     Args:
-        owner: the element of a file into which they are inserted.
+        owner: the element in a file that receives the new elements.
         new: the new elements, created by a program.
-        after: the element in the owner after which they are inserted; None for the end.
-        first: whether they are inserted before all elements in it, if `after` is None.
+        after: the child of the owner after which they are inserted, or None for the end.
+        first: whether they are inserted before all children, if `after` is None.
 
     Returns:
-        The replacement; None if the owner is not written in the file as an element.
+        The replacement, or None if the owner is not written in the file.
     """
     found = element_range(owner)
     tag = start_tag_of(owner)
@@ -189,6 +192,6 @@ def inserted(
 
 
 def _blanks(text: str, offset: int) -> str:
-    """Return the blanks at the beginning of the line of a place."""
+    """Return the blanks at the beginning of the line that contains an offset."""
     line = text[text.rfind("\n", 0, offset) + 1 : offset]
     return line[: len(line) - len(line.lstrip())]

@@ -1,7 +1,7 @@
-"""Positions of names and values inside a start tag.
+"""The positions of names and values inside a start tag.
 
-The tree keeps only the offset of each ``<``. Places inside the tag are found by reading the tag again. This is done
-only for the few places that a message or the viewer needs.
+The tree only stores the offset of each ``<``. Positions inside a tag are found by scanning the tag again, which is only
+done for the few locations that a message or the viewer needs.
 """
 
 from __future__ import annotations
@@ -20,18 +20,21 @@ def attribute_value_range(text: str, offset: int, name: str) -> tuple[int, int] 
 
     Args:
         text: the whole source text.
-        offset: character offset of the start tag's ``<``.
+        offset: the character offset of the start tag's ``<``.
         name: the attribute's name as written.
 
     Returns:
-        Start and end (exclusive), or None if the tag does not have the attribute.
+        The start and end (exclusive), or None if the tag does not have the attribute.
     """
     found = _attributes(text, offset).get(name)
     return found and found[1]
 
 
 def attribute_name_range(text: str, offset: int, name: str) -> tuple[int, int] | None:
-    """Return the offsets of an attribute's name in the start tag at `offset`; None if it is missing."""
+    """Return the character offsets of an attribute's name, or None if it is missing.
+
+    `offset` is that of the start tag's ``<``.
+    """
     found = _attributes(text, offset).get(name)
     return found and found[0]
 
@@ -42,7 +45,10 @@ _read_last: tuple[str, int, _Ranges] = ("", -1, {})
 
 
 def _attributes(text: str, offset: int) -> _Ranges:
-    """Return the ranges of name and value of each attribute in the start tag at an offset, by name."""
+    """Return the ranges of each attribute's name and value in a start tag, by name.
+
+    `offset` is that of the start tag's ``<``.
+    """
     global _read_last  # noqa: PLW0603 - one tuple, so that threads see it whole
     last_text, last_offset, ranges = _read_last
     if last_text is text and last_offset == offset:
@@ -58,16 +64,16 @@ def _attributes(text: str, offset: int) -> _Ranges:
 
 
 def raw_offset(text: str, start: int, end: int, index: int) -> int:
-    """Return the character offset in the source of a character of a value.
+    """Return the offset in the source of the character at an index of a parsed value.
 
-    The value may be shorter than its source: an entity such as ``&lt;`` yields one character, and so do the
-    two characters of a Windows line end.
+    The parsed value may be shorter than its source: an entity such as ``&lt;`` becomes one character, and so do the two
+    characters of a Windows line ending.
 
     Args:
         text: the complete source text.
-        start: the offset where the written value begins.
-        end: the offset where it ends (exclusive).
-        index: the index of the character in the tree's value.
+        start: the offset of the value in the source.
+        end: the offset after the value in the source.
+        index: the index of the character in the parsed value.
     """
     at = start
     for _ in range(index):

@@ -1,4 +1,7 @@
-"""XML reader for a file, or its replacement text, that builds a tree with the position of each node."""
+"""The XML reader, which builds a tree with the position of each node.
+
+It reads a file, or the text that replaces the file's.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,7 @@ import os
 import re
 from bisect import bisect_right
 from collections.abc import Callable, Mapping
-from pyexpat import ExpatError, ParserCreate  # xml.parsers.expat, without importing its packages
+from pyexpat import ExpatError, ParserCreate  # the parser of xml.parsers.expat, without importing its packages
 
 from linkwright.diagnostics import (
     Diagnostic,
@@ -30,11 +33,11 @@ if TYPE_CHECKING:
 GROWTH_LIMIT = 1_000_000
 """How many characters the entities of one document may expand to, all together."""
 
-_REFERENCE = r"&([^\s#;&<]+);"  # not compiled here: few files need it
+_REFERENCE = r"&([^\s#;&<]+);"  # not compiled here because few files need it
 
 
 class EntityGuard:
-    """The internal entities that a document declares, with the length of each when expanded."""
+    """The internal entities that a document declares, with the expanded length of each."""
 
     def __init__(self) -> None:
         self._values: dict[str, str] = {}
@@ -44,16 +47,19 @@ class EntityGuard:
         return bool(self._values)
 
     def declare(self, name: str, value: str) -> None:
-        """Record an internal entity; of two with the same name, the first applies, as in XML."""
+        """Record an internal entity.
+
+        As in XML, the first declaration of a name wins.
+        """
         self._values.setdefault(name, value)
 
     def growth(self, text: str) -> int:
-        """Return the total length to which the references to declared entities in a text expand."""
+        """Return the total expanded length of the references to declared entities in a text."""
         return sum(self._length(name, ()) for name in re.findall(_REFERENCE, text))
 
     def _length(self, name: str, within: tuple[str, ...]) -> int:
         value = self._values.get(name)
-        if value is None or name in within:  # predefined or undeclared; the parser reports recursion
+        if value is None or name in within:  # predefined, undeclared or recursive: the parser reports recursion
             return 0
         known = self._lengths.get(name)
         if known is None:
@@ -64,28 +70,28 @@ class EntityGuard:
         return known
 
 
-_BEYOND_ASCII = rb"[\x80-\xff]+"  # not compiled here: few files need it
+_BEYOND_ASCII = rb"[\x80-\xff]+"  # not compiled here because few files need it
 _CDATA_START = len("<![CDATA[")
 
 
 def parse(
     text: str | bytes, name: str, *, blanks: bool = True, read_as: str | None = None, any_prefix: bool = False
 ) -> Document:
-    """Read a document.
+    """Return the document of an XML text.
 
-    Names stay as written. Entities that the document itself declares are expanded; external ones are refused.
+    Names are returned as written. Entities that the document itself declares are expanded, and external entities are
+    refused.
 
     Args:
-        text: the document; bytes are decoded like those of a file.
+        text: the XML text; bytes are decoded like those of a file.
         name: the name of the text in messages: a path, or a name in angle brackets such as ``<stdin>``.
         blanks: whether to keep texts that consist of blanks, which only matter if the document is written again.
-        read_as: the text to read instead, with everything at the same position; for languages whose own parsers accept
-            text that XML forbids.
+        read_as: a text to parse instead, with the same positions, for parsers that accept text that XML forbids.
         any_prefix: whether names may have undeclared prefixes.
 
     Raises:
-        LinkwrightError: XML104 (not text), XML105 (empty), XML106 (a pointer of Git LFS), XML2xx (not well-formed
-            XML), with the place.
+        LinkwrightError: XML104 (not text), XML105 (empty), XML106 (a Git LFS pointer) or XML2xx (not well-formed XML),
+            with the location.
     """
     text, encoding = decoded(text, name) if isinstance(text, bytes) else unsaved(text, name)
     document = _Reader(SourceText(name, text), blanks=blanks, read_as=read_as, any_prefix=any_prefix).read()
@@ -94,10 +100,10 @@ def parse(
 
 
 def parse_file(path: str | Path) -> Document:
-    """Read a document from a file.
+    """Return the document of an XML file.
 
     Raises:
-        LinkwrightError: XML101 (no such file), XML102 (a folder), XML103 (cannot be read), and the errors of `parse`.
+        LinkwrightError: XML101 (no such file), XML102 (a folder), XML103 (cannot be read), or an error of `parse`.
     """
     return parse(read_bytes(path), str(path))
 
@@ -127,7 +133,7 @@ def read_bytes(path: str | Path) -> bytes:
                 "XML103", phrase("cannot read '{path}': {reason}", path=path, reason=foreign(reason)), hint=advice
             )
         ) from None
-    if len(data) == LARGEST_TEXT:  # such as a device that produces endless data
+    if len(data) == LARGEST_TEXT:  # for example a device that produces endless data
         reason = phrase("it has more than {count} million bytes", count=LARGEST_TEXT // 1_000_000)
         message = phrase("cannot read '{path}': {reason}", path=path, reason=reason)
         raise LinkwrightError(Diagnostic("XML103", message))
@@ -143,7 +149,7 @@ def _missing(path: str | Path) -> Phrase:
 class _Reader:
     """A reader that builds the tree from expat's events.
 
-    While reading, positions are expat's byte offsets. For a text that is not plain ASCII, they are converted to
+    During parsing, positions are expat's byte offsets. For a text that is not plain ASCII, they are converted to
     character offsets at the end. Nearly all events are starts, ends and texts, so their handlers are closures for
     speed.
     """
@@ -157,7 +163,7 @@ class _Reader:
         self._keep_blanks = blanks
         self._parser = parser = ParserCreate("utf-8")
         parser.buffer_text = True
-        parser.specified_attributes = True  # leave out the defaults of a DTD, which are not written in the document
+        parser.specified_attributes = True  # ignore attribute defaults of a DTD, which are not written in the document
         parser.buffer_size = max(1024, min(len(self._data), 1 << 20))
         parser.CommentHandler = self._comment
         parser.ProcessingInstructionHandler = self._instruction
@@ -169,7 +175,7 @@ class _Reader:
         parser.ExternalEntityRefHandler = self._external_entity
         parser.SkippedEntityHandler = self._skipped_entity
         self._entities = EntityGuard()
-        self._top = Element("")  # contains the root and the nodes outside it
+        self._top = Element("")  # the parent of the root and of the nodes outside it
         self._open = [self._top]
         self._cdata_at: int | None = None
         self._doctype: str | None = None
@@ -204,8 +210,8 @@ class _Reader:
             if self._cdata_at is not None or (children and isinstance(children[-1], Text)):
                 self._more_characters(data, children)
                 return
-            # Expat reports text only when it reaches the next node, so the start of the text is computed back from
-            # there.
+            # Expat reports text only when it reaches the next node, so subtract the length to get the start of the
+            # text.
             at = parser.CurrentByteIndex - len(data)
             if not (is_ascii and text.startswith(data, at)):
                 at = self._text_start(data)
@@ -217,7 +223,7 @@ class _Reader:
         try:
             self._parser.Parse(self._data, True)
         except ExpatError as error:
-            from linkwright.xmltree.faults import syntax_error  # imported here, because most texts are well-formed
+            from linkwright.xmltree.faults import syntax_error  # imported here because most texts are well-formed
 
             self._check_prefixes()
             open_elements = [(element.tag, self._character(element.offset)) for element in self._open[1:]]
@@ -258,7 +264,7 @@ class _Reader:
         for root in self._top.elements():
             declared = {"xml", "xmlns", *_declared_prefixes(root)}
             if used <= declared:
-                return  # as in nearly all documents
+                return  # the usual case
             pending = [(root, declared)]
             while pending:
                 element, declared = pending.pop()
@@ -296,8 +302,9 @@ class _Reader:
             children.append(Text(data, self._source, self._text_start(data)))
 
     def _text_start(self, data: str) -> int:
-        # A text whose written form is longer than the read one (entities, Windows line ends) begins after the previous
-        # tag.
+        # If the source of a text is longer than its parsed form (entities, Windows line endings), the text begins after
+        # the
+        # previous tag.
         end = self._parser.CurrentByteIndex
         raw = data.encode("utf-8", "surrogatepass")
         if self._data.endswith(raw, 0, end):
@@ -389,7 +396,7 @@ def _outside(nodes: list[Node]) -> list[Comment | ProcessingInstruction]:
 def _to_character_offsets(document: Document, data: bytes) -> None:
     """Convert the byte offsets of all nodes to character offsets."""
     ends: list[int] = []
-    extra = [0]  # the surplus of bytes over characters up to each end
+    extra = [0]  # the surplus of bytes over characters up to the end of each run of non-ASCII characters
     for run in re.finditer(_BEYOND_ASCII, data):
         ends.append(run.end())
         extra.append(extra[-1] + len(run[0]) - len(run[0].decode("utf-8", "replace")))
@@ -402,10 +409,10 @@ def _to_character_offsets(document: Document, data: bytes) -> None:
 
 
 class Overlay:
-    """The files on disk with replacement texts for some, such as those not yet saved in an editor.
+    """The files on disk, with replacement texts for some, such as unsaved ones.
 
     Args:
-        texts: path -> the text to use for the file, whether or not the file exists.
+        texts: the text to use for each file, by path. The file need not exist.
     """
 
     def __init__(self, texts: Mapping[str | os.PathLike[str], str] | None = None) -> None:
@@ -413,11 +420,13 @@ class Overlay:
         self._documents: dict[str, Document] = {}
 
     def text(self, path: str | os.PathLike[str]) -> str | None:
-        """Return the text that replaces that of a file; None if the text on disk applies."""
+        """Return the replacement text of a file, or None if the text on disk applies."""
         return self._texts.get(_key(path)) if self._texts else None
 
     def document(self, path: str) -> Document | None:
-        """Return the document of a replacement text, parsed once; None if the text on disk applies.
+        """Return the document of a file's replacement text, or None if the text on disk applies.
+
+        A replacement text is parsed only once.
 
         Raises:
             LinkwrightError: if the text is not XML; see `linkwright.xmltree.parse`.
@@ -430,15 +439,18 @@ class Overlay:
         return self._documents[path]
 
     def read(self, path: str) -> Decoded:
-        """Return the text of a file, with its encoding.
+        """Return the text and the encoding of a file.
 
         Raises:
-            LinkwrightError: XML101 to XML104 and XML106, if the text cannot be read.
+            LinkwrightError: XML101 to XML104 or XML106 if the text cannot be read.
         """
         text = self.text(path)
         return decoded(read_bytes(path), path) if text is None else unsaved(text, path)
 
 
 def _key(path: str | os.PathLike[str]) -> str:
-    """Return one key for a file, whichever links lead to it, as packages are often installed as links."""
+    """Return a key for a file that does not depend on the symbolic links in its path.
+
+    Packages are often installed as links.
+    """
     return os.path.realpath(path)

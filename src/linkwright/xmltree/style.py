@@ -1,4 +1,7 @@
-"""The style of formatted XML; a module of its own, because every check reads the settings that contain it."""
+"""The style of formatted XML.
+
+This is a module of its own because the settings contain a style, and every check reads them.
+"""
 
 from __future__ import annotations
 
@@ -6,11 +9,11 @@ from linkwright.loading.lean_dataclasses import NamedTuple
 
 
 class Style(NamedTuple):
-    """The options of a format.
+    """The style of formatted XML.
 
     Attributes:
         indent: the number of spaces for each level.
-        width: the longest line, in characters, where a line can be broken.
+        width: the maximum length of a line that can be broken, in characters.
     """
 
     indent: int = 2

@@ -1,14 +1,15 @@
-"""XML parsing as in TinyXML2, the parser of urdfdom and the simulators, which accepts more than XML.
+"""XML parsing as in TinyXML2, the lenient parser of urdfdom and the simulators.
 
-It does not know namespaces, ends a comment only at ``-->``, skips text before the root element and elements after
-it, and stops reading after a closing tag without an open element. It also accepts an ``&`` that does not begin an
-entity, a ``<`` in a value, attributes without a blank between them, control characters, and a second XML
-declaration directly after the first. Such files work for their users, so they are read, with a warning.
+TinyXML2 does not support namespaces, and ends a comment only at ``-->``. It skips text before the root element and
+elements after the root, and stops at a closing tag without an open element. It also accepts an ``&`` that does not
+begin an entity, a ``<`` in a value, attributes without a blank between them, control characters, and a second XML
+declaration directly after the first. Such files work for their users, so they are accepted with a warning.
 
 Characters that TinyXML2 accepts and expat refuses are replaced by the same number of other characters.
 
-Each repair gets a text and the place of its first mistake. It returns the text with all mistakes of that kind replaced,
-or unchanged if the mistake is of another kind. `put_back` then restores the original characters in the tree.
+The arguments of a repair are a text and the offset of the text's first mistake. It returns the text with all mistakes
+of its kind replaced, or the unchanged text if the mistake is of another kind. `put_back` then restores the original
+characters in the tree.
 """
 
 from __future__ import annotations
@@ -39,17 +40,20 @@ _ATTRIBUTE = lazy_pattern(r"""(\s*)([^\s=/>"'<]+)\s*=\s*("[^"]*"|'[^']*')""", re
 
 
 def stand_in(character: str) -> str:
-    """Return the character that `put_back` converts back to ``&``, ``<`` or a control character."""
+    """Return the substitute for a character, which `put_back` converts back.
+
+    The character is ``&``, ``<`` or a control character.
+    """
     return _STAND_INS[character]
 
 
 def can_stand_in(text: str) -> bool:
-    """Return whether a text contains none of the replacement characters."""
+    """Return whether a text has no substitute characters, so that they are unambiguous."""
     return _ANY.search(text) is None
 
 
 def tags_alone(text: str) -> str:
-    """Return the text with comments and CDATA sections blanked."""
+    """Return a text of the same length in which comments and CDATA sections are blank."""
     return _BETWEEN_TAGS.sub(lambda found: " " * len(found[0]), text)
 
 
@@ -72,12 +76,15 @@ def _less_than_in_values(text: str, at: int) -> str:
 
 
 def _missing_blanks(text: str, at: int) -> str:
-    """Insert blanks between attributes, each in place of the last character of the preceding value."""
+    """Return the text with a blank between attributes that lack one.
+
+    Each closing quote replaces the last character of its value, so that positions stay valid.
+    """
     if text[at - 1 : at] not in ("'", '"'):
         return text
     for value in _values_without_blank_after(text):
         if value.start == value.end or text[value.end - 1] == ";":
-            return text  # there is no character to replace, or it ends an entity
+            return text  # the value is empty, or its last character ends an entity
         text = text[: value.end - 1] + text[value.end] + " " + text[value.end + 1 :]
     return text
 
@@ -86,7 +93,10 @@ REPAIRS = (_control_characters, _less_than_in_values, _missing_blanks)
 
 
 def put_back(document: Document, text: str) -> None:
-    """Restore the characters in a tree that were replaced in its text."""
+    """Restore the original characters in a tree that was parsed from a repaired text.
+
+    `text` is the text before the repairs.
+    """
     shortened: dict[int, list[_Value]] = {}
     for value in _values_without_blank_after(text):
         shortened.setdefault(value.tag, []).append(value)
@@ -105,7 +115,7 @@ def put_back(document: Document, text: str) -> None:
 
 
 class _Value(NamedTuple):
-    """The value of an attribute: the start of its tag, its name, and its range without the quotes."""
+    """The value of an attribute: offset of the tag, name, and range without the quotes."""
 
     tag: int
     name: str
@@ -118,7 +128,7 @@ def _values(text: str) -> Iterator[_Value]:
 
 
 def _values_without_blank_after(text: str) -> Iterator[_Value]:
-    """Yield the values that are directly followed by another attribute, without a blank."""
+    """Yield the values that another attribute follows without a blank."""
     last: _Value | None = None
     for value, blanks in _with_blanks_before(text):
         if last is not None and last.tag == value.tag and not blanks:
@@ -150,15 +160,15 @@ _DEFINITION = "<!ENTITY"
 def parse_as_tinyxml(
     text: str, name: str, readers: Phrase, *, read_as: str | None = None
 ) -> tuple[Document, tuple[Diagnostic, ...]]:
-    """Parse a text as TinyXML2 does.
+    """Return the document of a text as TinyXML2 parses it, and the warnings.
 
-    Each kind of mistake that XML forbids gets a warning (XML205 to XML207).
+    There is one warning for each kind of mistake that XML forbids (XML205 to XML207).
 
     Args:
         text: the text.
-        name: the name of the file, for messages.
-        readers: a phrase on which programs read the file nevertheless, and which do not.
-        read_as: the text to read instead, with everything at the same position.
+        name: the name of the file in messages.
+        readers: a phrase about the programs that accept the file nevertheless, and those that do not.
+        read_as: a text to parse instead, with the same positions.
 
     Raises:
         LinkwrightError: if TinyXML2 does not accept the text either (XML###).
@@ -228,12 +238,15 @@ def _ampersands(source: SourceText, read_as: str) -> tuple[str, _Mistake | None]
 
 
 def _without(text: str, match: re.Match[str]) -> str:
-    """Return the text with the first group of a match blanked."""
+    """Return a text of the same length in which the first group of a match is blank."""
     return text[: match.start(1)] + blanked(match[1]) + text[match.end(1) :]
 
 
 def blanked(text: str) -> str:
-    """Return the same number of blanks in the same number of lines, so that positions stay valid."""
+    """Return a text with all characters except blanks and line endings replaced by blanks.
+
+    Positions in the rest of a file therefore stay valid.
+    """
     return re.sub(r"\S", " ", text)
 
 
@@ -270,7 +283,8 @@ def _parsed(source: SourceText, read_as: str, readers: Phrase) -> tuple[Document
 def _repaired(source: SourceText, error: LinkwrightError, text: str) -> str:
     """Return the text with all mistakes of the error's kind replaced.
 
-    If TinyXML2 reports the error, too, it is raised.
+    Raises:
+        LinkwrightError: `error`, if no repair applies.
     """
     diagnostic = error.diagnostics[0]
     if diagnostic.code == _NOT_XML and diagnostic.span is not None and can_stand_in(source.text):
@@ -290,7 +304,7 @@ def _passed_over(source: SourceText, end: int, readers: Phrase) -> Diagnostic:
 
 
 def _end_of_root(diagnostic: Diagnostic, text: str) -> int | None:
-    """Return where the content after the root may begin, according to the error that it causes."""
+    """Return the offset at which the content after the root may begin, or None for other errors."""
     if diagnostic.span is None or diagnostic.source is None:
         return None
     at = diagnostic.source.offset(diagnostic.span.line, diagnostic.span.column)
@@ -298,7 +312,10 @@ def _end_of_root(diagnostic: Diagnostic, text: str) -> int | None:
 
 
 def _is_passed_over(rest: str) -> bool:
-    """Return whether the elements after the root are complete up to an unmatched closing tag."""
+    """Return whether TinyXML2 ignores the content after the root.
+
+    This is so if the elements are well-formed up to an unmatched closing tag or the end.
+    """
     parser = ParserCreate()
     depth = 0
 
@@ -319,5 +336,5 @@ def _is_passed_over(rest: str) -> bool:
 
 
 def _has_dashes(comment: str | None) -> bool:
-    """Return whether XML forbids the content of a comment; pass None for other nodes."""
+    """Return whether a comment has dashes that XML forbids; False for None (no comment)."""
     return comment is not None and ("--" in comment or comment.endswith("-"))

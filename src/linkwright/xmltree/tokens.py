@@ -1,8 +1,8 @@
-"""The tokens of an XML text, whatever its state: every character belongs to one of them.
+"""The tokens of a text that need not be XML: every character belongs to one token.
 
-Editors ask about texts that are being typed, and a formatter must keep what a tree leaves out. So a token is found in
-any text. Where markup is not complete, it ends before the next ``<``, and an attribute without its closing quote ends
-with its line or tag.
+Editors request the tokens of incomplete texts, and a formatter must preserve text that a tree leaves out. Therefore,
+every text can be split into tokens. An incomplete tag ends before the next ``<``. An attribute without its closing
+quote ends with its line or tag.
 """
 
 from __future__ import annotations
@@ -49,16 +49,16 @@ class Kind(Enum):
 
 
 class TokenAttribute(NamedTuple):
-    """An attribute of a start tag, by character offsets in the text.
+    """An attribute of a start tag, with character offsets in the text.
 
     Attributes:
         name: the name as written.
-        start: the first character of the name.
-        value: the value as written, entities unresolved; None if there is no ``=``.
-        value_start: the first character of the value; where one can be written if there is none.
-        value_end: behind the value.
-        quote: the quote around the value; empty if it lacks one.
-        end: behind the closing quote.
+        start: the offset of the name.
+        value: the value as written, with unresolved entities, or None if there is no ``=``.
+        value_start: the offset of the value or, if there is none, the offset where a value can be inserted.
+        value_end: the offset after the value.
+        quote: the quote around the value; empty if there is none.
+        end: the offset after the closing quote.
     """
 
     name: str
@@ -74,10 +74,10 @@ class Token(NamedTuple):
     """A token of a text.
 
     Attributes:
-        kind: what it is.
-        text: its characters, as written.
-        start: its first character's offset.
-        is_closed: whether its end is written, such as the ``>`` of a tag; always true for texts.
+        kind: the kind of the token.
+        text: the characters of the token, as written.
+        start: the character offset of the token.
+        is_closed: whether the end of the token is written, such as the ``>`` of a tag; always True for texts.
     """
 
     kind: Kind
@@ -87,35 +87,38 @@ class Token(NamedTuple):
 
     @property
     def end(self) -> int:
-        """The offset behind its last character."""
+        """The character offset after the token."""
         return self.start + len(self.text)
 
     @property
     def is_whole(self) -> bool:
-        """Whether it is a whole element, ``<a/>``."""
+        """Whether the token is a whole element, ``<a/>``."""
         return self.kind is Kind.START and self.text.endswith("/>")
 
     @property
     def name(self) -> str:
-        """The name of a tag, as written; empty while it is not typed, and for other tokens."""
+        """The name of a tag as written; empty if it is not yet typed, and for other tokens."""
         found = _NAME.match(self.text) if self.kind in (Kind.START, Kind.END) else None
         return "" if found is None else str(found[1])
 
     @property
     def name_start(self) -> int:
-        """The offset of the first character of a tag's name."""
+        """The character offset of a tag's name."""
         found = _NAME.match(self.text)
         return self.start if found is None else self.start + found.start(1)
 
     def attributes(self) -> list[TokenAttribute]:
-        """Return the attributes of a start tag, in the order of the text."""
+        """Return the attributes of a start tag in source order; empty for other tokens."""
         if self.kind is not Kind.START:
             return []
         return [*_attributes(self)]
 
 
 def tokens(text: str) -> Iterator[Token]:
-    """Yield the tokens of a text, which need not be XML; joined, their texts are the text."""
+    """Yield the tokens of a text, which need not be XML.
+
+    The joined texts of the tokens are the whole text.
+    """
     at = 0
     while at < len(text):
         opening = text.find("<", at)
@@ -127,7 +130,7 @@ def tokens(text: str) -> Iterator[Token]:
         if at == len(text):
             return
         found = _MARKUP.match(text, at)
-        assert found is not None  # a start tag may consist of its ``<``
+        assert found is not None  # a start tag always matches, even if it is only a ``<``
         name = str(found.lastgroup)
         yield Token(Kind(name), found[0], at, found[0].endswith(_ENDS.get(name, ">")))
         at = found.end()

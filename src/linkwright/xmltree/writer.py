@@ -1,8 +1,8 @@
 """Serialization of a tree to text.
 
 The form is that of ros/xacro 2.1 on Python up to 3.12: minidom's ``toprettyxml`` with an indentation of two blanks,
-attributes in alphabetical order, no blank text, and elements that contain only text on one line. It is the same
-here on every Python version.
+attributes in alphabetical order, no blank text, and elements that contain only text on one line. This writer produces
+the same form on every Python version.
 """
 
 from __future__ import annotations
@@ -53,9 +53,12 @@ def write_element(element: Element, depth: int = 0) -> str:
 
 
 def tidied(root: Element) -> Element:
-    """Return a copy in which texts next to elements are stripped, as each writing would add blanks to them."""
+    """Return a copy in which texts next to elements are stripped.
+
+    Otherwise, each write would add blanks to such texts.
+    """
     top = Element(root.tag, dict(root.attributes))
-    todo = [(root, top)]  # no recursion: the writer reports excessive nesting
+    todo = [(root, top)]  # no recursion, because the writer reports excessive nesting
     while todo:
         element, copy = todo.pop()
         mixed = any(not isinstance(child, Text) for child in element.children)
@@ -73,7 +76,7 @@ def tidied(root: Element) -> Element:
 
 
 def _write_nodes(nodes: Iterable[Node], put: Callable[[str], None], indent: str = "") -> None:
-    # Use a loop with its own stack: documents may be nested more deeply than Python's calls.
+    # A loop with its own stack, because documents may be nested more deeply than Python's call stack allows.
     stack: list[tuple[Iterator[Node], str]] = []
     remaining = iter(nodes)
     around = len(indent) // len(_INDENT)
@@ -115,7 +118,7 @@ def _write_nodes(nodes: Iterable[Node], put: Callable[[str], None], indent: str 
 
 
 def _text_of_original(copy: LazyCopy, indent: str) -> str:
-    """Return the text of a copy that was never accessed."""
+    """Return the text of a lazy copy, which is that of its original with another indentation."""
     cache, original = copy.plan, copy.original
     if isinstance(cache, CachedText) and cache.written is not None and cache.written[0] == indent:
         return cache.written[1]

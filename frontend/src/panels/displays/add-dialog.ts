@@ -143,7 +143,7 @@ export class AddDialog {
       const rows = ordered.map((cls) => this.choice(cls, topic, shortName(cls), aboutDisplay(cls)));
       const [obvious] = rows;
       const name = h("div", { class: "topic-name" }, topic, h("span", { class: "topic-type" }, message));
-      // The name stands for the display that most users would choose.
+      // A click on the name chooses the display that most users want.
       for (const kind of ["click", "dblclick"] as const) {
         name.addEventListener(kind, () => obvious?.dispatchEvent(new MouseEvent(kind)));
       }

@@ -88,7 +88,7 @@ export class Dock {
     return this.api.getPanel(id) !== undefined;
   }
 
-  /** Opens a panel at its place, or brings it to the front. */
+  /** Opens a panel at its default position, or brings it to the front. */
   open(id: PanelId): void {
     this.add(id);
     this.api.getPanel(id)?.api.setActive();

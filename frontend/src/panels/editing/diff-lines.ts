@@ -37,7 +37,7 @@ function pair(old: string, now: string): [DiffLine, DiffLine] {
   let [head, tail] = [0, 0];
   while (head < least && old[head] === now[head]) head += 1;
   while (tail < least - head && old.at(-1 - tail) === now.at(-1 - tail)) tail += 1;
-  // Mark whole numbers and words rather than single characters of them.
+  // Mark complete numbers and words instead of single characters.
   while (isWordCharacter(old[head - 1])) head -= 1;
   while (isWordCharacter(old[old.length - tail])) tail -= 1;
   const line = (sign: string, text: string): DiffLine => {

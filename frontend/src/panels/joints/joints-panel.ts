@@ -7,7 +7,7 @@ import { JointRow } from "./joint-row";
 import { PoseBar } from "./pose-bar";
 import { SweepBar } from "./sweep-bar";
 
-/** The number of joints from which on the filter is shown. */
+/** The minimum number of joints for which the filter is shown. */
 const MIN_FILTERED = 10;
 
 /** The sliders of joint_state_publisher_gui, with named poses and a sweep. */

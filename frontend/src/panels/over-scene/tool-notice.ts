@@ -3,7 +3,7 @@ import type { ToolsState } from "../../state/tools";
 
 const NOTICE_MS = 4000;
 
-/** The notice over the scene, for some seconds, that explains why the active tool did not do what was requested. */
+/** The notice over the scene, for some seconds, that explains why the active tool refused a request. */
 export class ToolNotice {
   readonly element = h("div", { class: "line-notice", role: "status", data: { notice: "tool" } });
   private timer: ReturnType<typeof setTimeout> | undefined;

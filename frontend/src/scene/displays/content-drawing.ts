@@ -54,7 +54,7 @@ export abstract class ContentDrawing<K extends Kind> implements Drawing {
     this.arrange();
   }
 
-  /** Returns the counts and bounds of what is drawn; bounds are in the fixed frame, null if nothing is drawn. */
+  /** Returns the counts and bounds of the drawn objects; bounds are in the fixed frame, null if nothing is drawn. */
   inspect(): object {
     const box = new Box3();
     this.expandBox(box);

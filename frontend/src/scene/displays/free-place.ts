@@ -11,7 +11,7 @@ const SIDES = [[1, 0], [0, 1], [-1, 0], [0, -1]] as const;
 
 /**
  * Returns a place on the ground of a world with room for an object of one metre: the given place or, along an axis, the
- * nearest free one at a whole number of metres from it; next to all existing objects if none is free.
+ * nearest free one at an integer number of metres from it; next to all existing objects if none is free.
  *
  * @param boxes - the boxes around the existing objects, in the fixed frame, m.
  * @param world - the pose of the world in the fixed frame.

@@ -14,7 +14,7 @@ const MISS: Color = [0.25, 0.6, 1, 0.1];
 /** The colours of a camera's frustum: of its edges near the camera, and of those far away. */
 const FRUSTUM: Color = [1, 0.75, 0.3, 0.9];
 const FRUSTUM_FAR: Color = [1, 0.75, 0.3, 0.35];
-/** The distance from which on the frustum's edges are drawn fainter, m. */
+/** The distance beyond which the frustum's edges are drawn fainter, m. */
 const NEAR_LENGTH = 1;
 
 /** The lines of a sensor, with the pose of the sensor in its link. */

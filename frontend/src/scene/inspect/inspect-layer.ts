@@ -18,7 +18,7 @@ export class InspectLayer {
   private showsMasses = false;
   private readonly units = new Map<string, { revision: number; unit: number }>();
 
-  /** @param boundsOf - returns the bounding box of what a display draws, in the fixed frame. */
+  /** @param boundsOf - returns the bounding box of a display's objects, in the fixed frame. */
   constructor(
     private readonly session: Session,
     private readonly boundsOf: (display: string) => Box3,

@@ -70,7 +70,7 @@ export function flatten(root: Object3D, isOwn: (material: Material) => boolean):
 }
 
 /**
- * Returns the template of a file; `problem` says what is missing from it.
+ * Returns the template of a file; `problem` names the missing parts.
  *
  * @throws MeshError if nothing can be drawn.
  */

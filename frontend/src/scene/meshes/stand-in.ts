@@ -66,7 +66,7 @@ function weld({ positions, normals, index }: Triangles, simplifier: Simplifier):
   const corners = index?.length ?? positions.length / COMPONENTS;
   const joined = new Uint32Array(corners);
   /**
-   * The newest vertex at each place, and for each vertex the previous one at its place; numbers plus one, 0 for none.
+   * The newest vertex at each position, and for each vertex the previous one at the same position; numbers plus one, 0 for none.
    */
   const [newest, before] = [new Uint32Array(place.length), new Uint32Array(corners)];
   const [at, sum] = [new Float32Array(corners * COMPONENTS), new Float32Array(corners * COMPONENTS)];

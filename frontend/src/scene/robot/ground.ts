@@ -1,13 +1,13 @@
 import { Box3, Vector3 } from "three";
 import type { RobotScene } from "../../protocol";
 
-/** A part stands on a plane if it is closer to it than this share of the robot's size. */
+/** A part touches a plane if their distance is less than this fraction of the robot's size. */
 const STANDING_TOLERANCE = 0.01;
 
 /**
  * Returns the height of a robot's ground in the fixed frame, m: its lowest point if that is below z = 0, as for wheels
- * below the frame about which they turn. For a robot whose base stands on z = 0, that is the ground whatever reaches
- * below it, as an arm mounted on a table may.
+ * below the frame about which they turn. For a robot whose base touches z = 0, that is the ground, even if other parts
+ * reach below it, as an arm mounted on a table may.
  *
  * @param robot - its base consists of the links that no joint moves.
  * @param boxes - the bounding boxes of the visible parts of each link, by its name.

@@ -141,7 +141,7 @@ export class ShapeDrawing {
   }
 
   /**
-   * Adds the meshes that stand-ins can replace, and the pieces of these stand-ins.
+   * Adds the meshes that have stand-ins, and the pieces of these stand-ins.
    *
    * @returns whether all requested stand-ins are available.
    */

@@ -33,7 +33,7 @@ export interface ToolContext {
   /** The tool's settings; null for the fallback tool, before the server has sent any. */
   readonly state: ToolState | null;
   setHint(text: string): void;
-  /** Shows over the scene why the tool did not do what was requested; an empty text hides the notice. */
+  /** Shows over the scene why the tool refused a request; an empty text hides the notice. */
   showNotice(text: string): void;
   /** Sets a CSS cursor. */
   setCursor(cursor: string): void;

@@ -5,7 +5,7 @@ import { TOOLS } from "./catalog";
 import { MoveCameraTool } from "./move-camera";
 import type { SceneTool, ToolContext } from "./tool";
 
-/** The tools of the toolbar, of which the active one handles the mouse. */
+/** The tools of the toolbar. The active tool handles the mouse. */
 export class Toolbox {
   private readonly tools = new Map<string, { state: ToolState; tool: SceneTool }>();
   /** The tool that is active while the toolbar has none. */

@@ -17,14 +17,14 @@ _LARGEST = 256 << 20
 
 
 class AssetRefusedError(Exception):
-    """Raised when an asset is refused; the text gives the reason."""
+    """Raised when an asset is refused; the message gives the reason."""
 
 
 class Assets:
-    """Finds files by their ``package://`` addresses.
+    """Reads files by their ``package://`` addresses.
 
     Args:
-        finder: finds packages; None for the finder of the environment, created on demand.
+        finder: finds packages; None for the finder of the environment, which is created on demand.
     """
 
     def __init__(self, finder: PackageFinder | None = None) -> None:
@@ -63,9 +63,9 @@ class Assets:
 
 
 def _content(package: str, share: Path, relative: PurePosixPath) -> bytes:
-    """Read a file after resolving and checking links.
+    """Return the content of a file of a package, after following and checking links.
 
-    colcon links some files into other folders of the package.
+    colcon links some files to other folders of the package.
     """
     path = (share / relative).resolve(strict=True)
     if not path.is_relative_to(share.resolve(strict=True)):

@@ -35,10 +35,10 @@ _LOOK_AFTER = 0.1
 
 
 class FoxgloveBridge(SingleNode):
-    """The node foxglove_bridge, with the parameters that it shares with the node of ROS.
+    """The node foxglove_bridge, with those parameters of the ROS node that it supports.
 
-    It binds the loopback address unless `address` names another, because every client that connects may publish, call
-    services and set parameters.
+    The server binds the loopback address unless `address` names another one, because every client that connects may
+    publish, call services and set parameters.
     """
 
     DEFAULT_NAME = "foxglove_bridge"
@@ -88,7 +88,7 @@ class FoxgloveBridge(SingleNode):
             session.close()
         self._offer.parameters.close()
         self._serving.cancel()
-        (self._server or self._listener).close()  # now: the loop may end before it runs scheduled callbacks
+        (self._server or self._listener).close()  # not in a callback, which may not run before the loop ends
         if self._runner is not None:
             self._goodbye = self._loop.create_task(self._runner.cleanup())
         super().close()
@@ -115,7 +115,7 @@ class FoxgloveBridge(SingleNode):
         self._offer.services.poll_changes()
 
     def _graph_changed(self) -> None:
-        with suppress(RuntimeError):  # the event loop is closed
+        with suppress(RuntimeError):  # the event loop was closed
             self._loop.call_soon_threadsafe(self._look_soon)
 
     def _look_soon(self) -> None:

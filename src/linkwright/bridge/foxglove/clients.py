@@ -1,4 +1,4 @@
-"""Connected clients, each with its send queue."""
+"""Connected clients, each with a send queue."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ _MOST_CONTROL = 4096
 class Client:
     """A connection to a client.
 
-    If a client reads too slowly, the oldest waiting data is dropped; everything else is kept.
+    If a client reads too slowly, the oldest queued topic messages are dropped; other messages stay in the queue.
 
     Args:
         socket: the WebSocket of the client.
-        most_bytes: the maximum number of bytes of data that may wait.
+        most_bytes: the maximum number of bytes of topic messages in the queue.
     """
 
     def __init__(self, socket: WebSocketResponse, most_bytes: int) -> None:
@@ -34,7 +34,7 @@ class Client:
         self._filled = asyncio.Event()
 
     def send(self, message: dict[str, Any] | bytes) -> None:
-        """Queue a message that must not be lost."""
+        """Queue a message that is never dropped."""
         made = message if isinstance(message, bytes) else json.dumps(message, ensure_ascii=False)
         self._control.append(made)
         self._filled.set()
@@ -48,7 +48,7 @@ class Client:
         self._filled.set()
 
     async def write(self) -> None:
-        """Send the queue until the connection ends."""
+        """Send the queued messages until the connection ends."""
         with suppress(ConnectionError):
             while True:
                 if len(self._control) > _MOST_CONTROL:

@@ -1,4 +1,4 @@
-"""The connection graph for clients: publishers, subscriptions and services by topic."""
+"""The connection graph for clients: publishers and subscribers by topic, and services."""
 
 from __future__ import annotations
 
@@ -24,7 +24,10 @@ def connections(node: Node) -> Connections:
 
 
 def update(before: Connections | None, now: Connections) -> dict[str, Any]:
-    """Return the message with the changes; for a client that has nothing yet, with everything."""
+    """Return the message with the changes of the connection graph.
+
+    `before` is None for a client that has no connection graph yet; the message then contains all of it.
+    """
     old = before or ({}, {}, {})
     published, subscribed, served = (
         {name: ids for name, ids in new.items() if known.get(name) != ids} for known, new in zip(old, now, strict=True)

@@ -1,4 +1,4 @@
-"""Filter topics, services and parameters by foxglove_bridge's lists of regular expressions."""
+"""Filters topics, services and parameters by foxglove_bridge's lists of regular expressions."""
 
 from __future__ import annotations
 
@@ -12,10 +12,12 @@ _MOST_KNOWN = 10_000
 
 
 class NameFilter:
-    """Filters names by regular expressions that must match the full name; a slow expression is not used again.
+    """A filter of names by regular expressions, one of which must match the full name.
+
+    An expression that takes too long is not used again.
 
     Args:
-        parameter: the parameter with the expressions, for messages.
+        parameter: the name of the parameter with the expressions, for log messages.
         expressions: the regular expressions.
 
     Raises:
@@ -27,7 +29,7 @@ class NameFilter:
         self._known: dict[str, bool] = {}
 
     def accepts(self, name: str) -> bool:
-        """Return whether a name passes the filter."""
+        """Return whether one of the expressions matches a name."""
         known = self._known.get(name)
         if known is None:
             if len(self._known) == _MOST_KNOWN:

@@ -1,4 +1,7 @@
-"""Decide which web pages may connect, because any page that a user opens can reach addresses of this machine."""
+"""Decides which web pages may connect.
+
+Any page that a user opens could otherwise connect to a server of this machine.
+"""
 
 from __future__ import annotations
 
@@ -14,8 +17,8 @@ _SCHEMES_OF_PROGRAMS = ("file", "app", "foxglove", "lichtblick")
 def is_welcome(origin: str | None, more: Collection[str] = ()) -> bool:
     """Return whether a client with an ``Origin`` header may connect.
 
-    Programs send no such header. Pages of Foxglove and Lichtblick may connect, and so may pages that this machine
-    serves.
+    A client without such a header is a program, and may connect. So may pages of Foxglove and Lichtblick, and pages
+    that this machine serves.
 
     Args:
         origin: the header; None if there is none.

@@ -1,4 +1,4 @@
-"""Parameters of all nodes for clients, by names such as ``/node.parameter``."""
+"""The parameters of all nodes for clients, by names such as ``/node.parameter``."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Parameters:
         self._clients: dict[str, AsyncParameterClient] = {}
 
     async def get(self, names: Sequence[str]) -> list[dict[str, Any]]:
-        """Return the parameters with these names, or all parameters, in the form for clients."""
+        """Return the parameters with these names, or all parameters if none is named, for clients."""
         by_node: dict[str, list[str] | None] = {}
         if names:
             for name in names:
@@ -45,7 +45,7 @@ class Parameters:
         ]
 
     async def set(self, parameters: Sequence[Mapping[str, Any]]) -> None:
-        """Set parameters; those that nodes refuse keep their values."""
+        """Set parameters; a parameter that its node refuses keeps its value."""
         for mapping in parameters:
             name = str(mapping.get("name", ""))
             node, _, parameter = name.partition(".")
@@ -105,7 +105,7 @@ class Parameters:
 
 
 def parameter_entry(name: str, value: Any) -> dict[str, Any]:
-    """Return a parameter in the form for clients."""
+    """Return a parameter as an entry of the protocol's parameter messages."""
     parameter: dict[str, Any] = {"name": name, "value": value}
     if isinstance(value, (bytes, bytearray)):
         parameter.update(value=base64.b64encode(value).decode(), type="byte_array")

@@ -29,7 +29,7 @@ class StatusLevel(IntEnum):
 
 
 class BadFrameError(ValueError):
-    """Raised when bytes from a client are not a message of the protocol; the text gives the reason."""
+    """Raised when bytes from a client are not a message of the protocol; the message gives the reason."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,10 +78,10 @@ def asset_error(request: int, why: str) -> bytes:
 
 
 def read_frame(frame: bytes) -> ClientMessage | ServiceRequest:
-    """Parse a binary frame of a client.
+    """Return the message in a client's binary frame.
 
     Raises:
-        BadFrameError: it is not a message of the protocol.
+        BadFrameError: the frame is not a message of the protocol.
     """
     try:
         kind = frame[0]

@@ -1,4 +1,4 @@
-"""Services of the graph for clients."""
+"""The services of the graph, for clients."""
 
 from __future__ import annotations
 
@@ -19,19 +19,22 @@ _PATIENCE = 10.0
 
 
 class CallFailedError(Exception):
-    """Raised when a service call fails; the text gives the reason."""
+    """Raised when a service call fails; the message gives the reason."""
 
 
 @dataclass(frozen=True, slots=True)
 class OfferedService:
-    """A service with its type and id."""
+    """A service of the graph, with its type and the ID that clients use."""
 
     number: int
     name: str
     type_name: str
 
     def advertisement(self) -> dict[str, Any]:
-        """Return the service in the form for clients, including the keys of older protocol versions."""
+        """Return the service as an entry of the protocol's ``advertiseServices`` message.
+
+        The entry also has the keys of older protocol versions.
+        """
         schemas = {part: schema_of(f"{self.type_name}_{part}") for part in ("Request", "Response")}
         advertisement: dict[str, Any] = {"id": self.number, "name": self.name, "type": self.type_name}
         for part, schema in schemas.items():
@@ -49,8 +52,8 @@ class Services:
     """The services that clients can call.
 
     Args:
-        node: the node that calls them.
-        wanted: the filter of service names.
+        node: the node that calls the services.
+        wanted: the filter that service names must pass.
     """
 
     def __init__(self, node: Node, wanted: NameFilter) -> None:
@@ -65,7 +68,7 @@ class Services:
         return list(self._offered.values())
 
     def poll_changes(self) -> tuple[list[OfferedService], list[int]]:
-        """Return the services added since the last call, and the ids of the removed ones."""
+        """Return the services added since the last call, and the IDs of those removed since."""
         there = {
             (endpoint.name, endpoint.type_name)
             for endpoint in self._node.graph.endpoints()
@@ -80,14 +83,14 @@ class Services:
             try:
                 get_service(type_name)
             except LinkwrightError:
-                continue  # the definition of its type is not available
+                continue  # the definition of the service's type is not available
             self._last += 1
             self._offered[name, type_name] = OfferedService(self._last, name, type_name)
             come.append(self._offered[name, type_name])
         return come, gone
 
     async def call(self, request: ServiceRequest) -> bytes:
-        """Call a service; return its response as CDR.
+        """Call a service, and return its response as CDR.
 
         Raises:
             CallFailedError: there is no response.

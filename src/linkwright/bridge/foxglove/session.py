@@ -53,7 +53,8 @@ class Session:
 
     Attributes:
         watches_connections: whether the client is notified of changes of the connection graph.
-        parameters: names of the parameters whose changes are sent to the client; empty for all, None for none.
+        parameters: the names of the parameters whose changes are sent to the client; empty for all parameters, None for
+            none.
     """
 
     offer: Offer
@@ -66,7 +67,7 @@ class Session:
     _tasks: set[asyncio.Task[None]] = field(default_factory=set)
 
     def receive(self, message: str | bytes) -> None:
-        """Handle a message of the client; errors are sent back to it."""
+        """Handle a message of the client; an error is sent back to the client."""
         try:
             if isinstance(message, bytes):
                 self._frame(read_frame(message))
@@ -80,7 +81,7 @@ class Session:
             self._complain(f"the message is not of the protocol: {type(error).__name__}: {str(error)[:200]}")
 
     def graph_changed(self, gone: list[int]) -> None:
-        """Drop subscriptions of channels that were removed, and update the connection graph."""
+        """Remove the subscriptions to channels that no longer exist, and update the connection graph."""
         for number, forwarding in list(self._forwardings.items()):
             if forwarding.channel.number in gone:
                 self._forwardings.pop(number).close()
@@ -95,7 +96,7 @@ class Session:
                 self._known = now
 
     def close(self) -> None:
-        """Close everything that the client has opened."""
+        """Remove all subscriptions, publications and requests of the client."""
         for task in self._tasks:
             task.cancel()
         for forwarding in self._forwardings.values():

@@ -29,7 +29,7 @@ class Channel:
     schema: str
 
     def advertisement(self) -> dict[str, Any]:
-        """Return the channel in the form for clients."""
+        """Return the channel as an entry of the protocol's ``advertise`` message."""
         return {
             "id": self.number,
             "topic": self.topic,
@@ -44,8 +44,8 @@ class Channels:
     """The channels that clients can subscribe to.
 
     Args:
-        node: the node that provides the graph.
-        wanted: the filter of topic names.
+        node: the node whose graph has the topics.
+        wanted: the filter that topic names must pass.
     """
 
     def __init__(self, node: Node, wanted: NameFilter) -> None:
@@ -60,11 +60,11 @@ class Channels:
         return list(self._channels.values())
 
     def get(self, number: int) -> Channel | None:
-        """Return the channel with an id, or None."""
+        """Return the channel with an ID, or None if there is none."""
         return next((channel for channel in self._channels.values() if channel.number == number), None)
 
     def poll_changes(self) -> tuple[list[Channel], list[int]]:
-        """Return the channels added since the last call, and the ids of the removed ones."""
+        """Return the channels added since the last call, and the IDs of those removed since."""
         there = {
             (endpoint.name, endpoint.type_name)
             for endpoint in self._node.graph.endpoints()
@@ -93,8 +93,8 @@ class Forwarding:
     Args:
         node: the node that subscribes.
         channel: the channel to forward.
-        client: the receiver.
-        number: the client's id of the subscription.
+        client: the client that receives the messages.
+        number: the client's ID of the subscription.
     """
 
     def __init__(self, node: Node, channel: Channel, client: Client, number: int) -> None:
@@ -127,14 +127,14 @@ class Forwarding:
 
 
 class Publication:
-    """Publishes the messages of a channel that a client advertised.
+    """Publishes the messages of a channel that a client has advertised.
 
     Args:
         node: the node that publishes.
         channel: the client's advertisement of the channel.
 
     Raises:
-        LinkwrightError: the type is unknown, or the topic's name is invalid.
+        LinkwrightError: the type is unknown, or the topic's name is not valid.
         ValueError: the encoding is not CDR.
     """
 
@@ -159,5 +159,5 @@ class Publication:
 
 
 def _full_type(name: str) -> str:
-    """Return the full name of a type; for messages, the form ``std_msgs/String`` is accepted too."""
+    """Return the full name of a message type; the short form ``std_msgs/String`` is accepted too."""
     return name.replace("/", "/msg/", 1) if name.count("/") == 1 else name

@@ -1,4 +1,4 @@
-"""Reading of single keys from the terminal while an event loop runs."""
+"""Reads single key presses from the terminal while an event loop runs."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ SPACE, UP, DOWN, RIGHT = " ", "\x1b[A", "\x1b[B", "\x1b[C"
 
 @contextmanager
 def listening(actions: Mapping[str, Callable[[], object]]) -> Iterator[bool]:
-    """Call the action of each key that is pressed while the context is entered.
+    """Run a function on each key press while the context is entered.
 
     Args:
-        actions: the action to call for each key.
+        actions: the function to call, by key.
 
     Yields:
-        Whether keys are read: standard input must be a terminal, with this process in its foreground.
+        Whether keys are read. They are read only if standard input is a terminal and this process is in its foreground.
     """
     if not _can_listen():
         yield False
@@ -33,7 +33,7 @@ def listening(actions: Mapping[str, Callable[[], object]]) -> Iterator[bool]:
 
     def read() -> None:
         text = os.read(descriptor, 64).decode(errors="replace")
-        while text:  # keys that are typed quickly arrive in one read
+        while text:  # keys that are pressed in quick succession arrive in one read
             key = next((action for action in actions if text.startswith(action)), "")
             if key:
                 actions[key]()

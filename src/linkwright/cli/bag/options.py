@@ -32,10 +32,10 @@ def add_overrides_argument(parser: argparse.ArgumentParser) -> None:
 
 
 def read_overrides(arguments: argparse.Namespace) -> dict[str, QoSProfile]:
-    """Return the QoS overrides of the file that the command line names; empty if it names none.
+    """Return the QoS profiles by topic from the overrides file, or an empty dict if none is given.
 
     Raises:
-        LinkwrightError: BAG106, the file cannot be read or has another structure.
+        LinkwrightError: BAG106, the file cannot be read or is not a valid overrides file.
     """
     path = arguments.qos_profile_overrides_path
     if path is None:

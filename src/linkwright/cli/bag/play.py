@@ -18,7 +18,7 @@ _DEFAULT_CLOCK_HZ = 40.0
 
 
 def configure_play(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``bag play``."""
     parser.add_argument("bag", metavar="BAG", help="the folder of a recording, or one .mcap or .db3 file")
     add_storage_argument(parser)
     parser.add_argument(
@@ -111,7 +111,7 @@ def configure_play(parser: argparse.ArgumentParser) -> None:
 
 
 def run_play(arguments: argparse.Namespace) -> int:
-    """Play a recording until its end, or until the user interrupts it."""
+    """Play a recording until it ends or the user interrupts the command, and return the exit status."""
     from linkwright.bag import BagReader, PlayOptions
     from linkwright.cli.session import run_in_graph
 
@@ -168,7 +168,10 @@ def run_play(arguments: argparse.Namespace) -> int:
 
 
 def _until_ns(arguments: argparse.Namespace) -> int | None:
-    """Return the time at which playback stops; as in ros2, a negative option means no limit."""
+    """Return the time in nanoseconds at which playback stops, or None for no limit.
+
+    As in ros2, a negative option means no limit.
+    """
     until_ns: int | None = arguments.playback_until_nsec
     if arguments.playback_until_sec is not None:
         until_ns = round(arguments.playback_until_sec * 1e9)

@@ -20,7 +20,7 @@ _CACHE_SIZE = 100 * 1024 * 1024
 
 
 def configure_record(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``bag record``."""
     parser.add_argument("names", metavar="TOPIC", nargs="*", help="the topics to record")
     parser.add_argument(
         "--topics",
@@ -139,7 +139,7 @@ def configure_record(parser: argparse.ArgumentParser) -> None:
 
 
 def run_record(arguments: argparse.Namespace) -> int:
-    """Record until the user interrupts it."""
+    """Record until the user interrupts the command, and return the exit status."""
     from linkwright.cli.session import run_in_graph
     from linkwright.hosting.signals import SignalWatch
 
@@ -190,7 +190,7 @@ def run_record(arguments: argparse.Namespace) -> int:
         status = run_in_graph(arguments, job, node_name=arguments.node_name, signals=signals)
     except KeyboardInterrupt:
         status = 0
-    interrupted = signals.received in (None, signal.SIGINT)  # the usual way to end a recording
+    interrupted = signals.received in (None, signal.SIGINT)  # SIGINT is the usual way to end a recording
     return status if interrupted else signals.exit_status or status
 
 

@@ -1,4 +1,4 @@
-"""``linkwright bag convert``, ``reindex`` and ``list``: rewrite recordings, list storage formats."""
+"""``linkwright bag convert``, ``reindex`` and ``list``: rewrite recordings, list plugins."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ _PLUGINS = {
 
 
 def configure_convert(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``bag convert``."""
     parser.add_argument(
         "-i",
         "--input",
@@ -76,7 +76,7 @@ def configure_convert(parser: argparse.ArgumentParser) -> None:
 
 
 def run_convert(arguments: argparse.Namespace) -> int:
-    """Rewrite recordings."""
+    """Convert recordings as the file with the output options requests."""
     from linkwright.bag.rewriting import rewrite
 
     for given in arguments.input:
@@ -88,7 +88,7 @@ def run_convert(arguments: argparse.Namespace) -> int:
 
 
 def configure_reindex(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``bag reindex``."""
     parser.add_argument("bag", metavar="BAG", type=Path, help="the folder of a recording")
     add_storage_argument(parser)
 
@@ -105,13 +105,13 @@ def run_reindex(arguments: argparse.Namespace) -> int:
 
 
 def configure_list(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``bag list``."""
     parser.add_argument("kind", metavar="KIND", choices=_PLUGINS, help="storage, converter, compressor or decompressor")
     parser.add_argument("-v", "--verbose", action="store_true", help="also describe each entry")
 
 
 def run_list(arguments: argparse.Namespace) -> int:
-    """Print our equivalents of one kind of rosbag2's plugins."""
+    """Print our equivalents of rosbag2's plugins of the requested kind."""
     if arguments.verbose:
         print(f"available {arguments.kind} plugins are:")
     for plugin in _PLUGINS[arguments.kind]:

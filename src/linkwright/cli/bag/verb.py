@@ -13,7 +13,7 @@ from linkwright.diagnostics import print_diagnostics
 
 
 def configure_info(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``bag info``."""
     parser.add_argument("bag", metavar="BAG", help="the folder of a recording, or one .mcap or .db3 file")
     add_storage_argument(parser)
     parser.add_argument("-t", "--topic-name", action="store_true", help="print only the names of the topics")

@@ -1,11 +1,7 @@
 """The program that shells run when TAB is pressed.
 
-It is called as ``python -m linkwright.cli.completion (--line LINE
-
- WORD ...)``.
-
-The words are those of the command line: the program is the first word, and the word at the cursor, which may be empty,
-is the last. The candidates for that word are printed, one per line.
+It is called as ``python -m linkwright.cli.completion (--line LINE | WORD ...)``. The first word is the program, and the
+last word, which may be empty, is the word at the cursor. The program prints the completions of this word, one per line.
 """
 
 from __future__ import annotations

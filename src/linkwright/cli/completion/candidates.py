@@ -1,8 +1,8 @@
-"""Completions of a command line.
+"""Computes the completions of a command line.
 
-`tools/command_reference.py` writes the commands, their options and arguments to the table ``commands.json`` from the
-commands' own parsers, because creating the parsers takes longer than a user waits for TAB. The name of an argument in
-the help (``PACKAGE``, ``TOPIC``) selects its candidates.
+`tools/command_reference.py` extracts the commands, their options and arguments from the commands' own parsers, and
+writes them to the table ``commands.json``. Creating the parsers at run time would take too long after TAB is pressed.
+The name of an argument in the help (``PACKAGE``, ``TOPIC``) selects its candidates.
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ def divided(line: str) -> list[str]:
     """Split a command line up to the cursor into words; the last word is incomplete and may be empty."""
     try:
         words = shlex.split(line)
-    except ValueError:  # a quotation is still open
+    except ValueError:  # an opening quotation mark is not closed yet
         words = line.split()
     return [*words, ""] if not words or line[-1:].isspace() else words
 
 
 def complete(words: Sequence[str]) -> list[str]:
-    """Return the completions of the last word of a command line; `scripts.FILES` requests file names."""
+    """Return the completions of the last word; `scripts.FILES` represents file names."""
     program, *given = words
     *before, current = given or [""]
-    current = current.lstrip("'\"")  # the quotation mark of an open quotation
+    current = current.lstrip("'\"")  # the opening quotation mark of an unfinished string
     found = _candidates(Path(program).name, before, current, json.loads(TABLE.read_text(encoding="utf-8")))
     return [fromkey for fromkey in dict.fromkeys(found) if fromkey.startswith((current, ":"))]
 

@@ -1,7 +1,7 @@
 """Names from the running graph, read from a cache.
 
-Discovering the nodes of other processes takes longer than a user waits for TAB. TAB therefore offers the names of the
-last discovery, and starts a new discovery in another process.
+Discovering the nodes of other processes takes too long after TAB is pressed. Completion therefore offers the names of
+the last discovery, and starts a new discovery in another process.
 """
 
 from __future__ import annotations
@@ -26,7 +26,14 @@ _STALE_SECONDS = 600.0
 
 
 def names_of(kind: str) -> list[str]:
-    """Return the cached names of a kind: ``topics``, ``nodes``, ``services`` or ``actions``."""
+    """Return the cached names of a kind, and start a discovery if they are out of date.
+
+    Args:
+        kind: ``topics``, ``nodes``, ``services`` or ``actions``.
+
+    Returns:
+        The names, or an empty list if there is no cache or the cache is too old.
+    """
     path = _path()
     try:
         age = time.time() - path.stat().st_mtime
@@ -43,7 +50,7 @@ def _path() -> Path:
 
 
 def _look_soon(path: Path) -> None:
-    """Start a discovery in another process, unless one was started a moment ago."""
+    """Start a discovery in another process, unless one started less than `_FRESH_SECONDS` ago."""
     begun = path.with_suffix(".begun")
     with suppress(OSError):
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -62,7 +69,7 @@ def _look_soon(path: Path) -> None:
 
 
 def discover() -> int:
-    """Discover the names of the graph, and write them to the cache that `names_of` reads."""
+    """Discover the names of the graph, cache them for `names_of`, and return the exit status."""
     from argparse import Namespace
 
     from linkwright.cli.calls import node_names

@@ -1,7 +1,4 @@
-"""Completion scripts for bash, zsh and fish.
-
-They pass the words to ``python -m linkwright.cli.completion``.
-"""
+"""Completion scripts for bash, zsh and fish, which call ``python -m linkwright.cli.completion``."""
 
 from __future__ import annotations
 
@@ -120,13 +117,13 @@ def script(shell: str, python: str, commands: Sequence[str]) -> str:
 def shell_script(shell: str, python: str, mark: str, missing: Sequence[str]) -> str:
     """Return the start-up script of ``linkwright shell``.
 
-    It provides completion, and hints for unavailable programs.
+    The script sets up completion, and prints a hint when the user calls a program that is not available.
 
     Args:
         shell: a key of `SHELLS`.
         python: the interpreter that has Linkwright.
         mark: the environment variable that names the folder of our programs.
-        missing: the programs for which a replacement exists.
+        missing: the unavailable programs that Linkwright can replace.
     """
     names = (" " if shell == "fish" else "|").join(missing)
     not_found = _NOT_FOUND[shell].replace("PYTHON", shlex.quote(python)).replace("NAMES", names)

@@ -1,6 +1,6 @@
 """Candidates for the arguments of commands.
 
-These are packages, executables, launch files and their arguments, and names and types of the graph.
+The candidates are packages, executables, launch files and their arguments, and names and types of the graph.
 """
 
 from __future__ import annotations
@@ -32,9 +32,9 @@ def candidates_of(kind: str, path: list[str], placed: list[str], table: Mapping[
 
     Args:
         kind: the argument's name in the help.
-        path: the names of command and subcommand, such as ``topic`` and ``echo``.
+        path: the names of the command and the subcommand, such as ``topic`` and ``echo``.
         placed: the preceding positional arguments.
-        table: the commands, with our executables and types.
+        table: the contents of ``commands.json``.
     """
     find = _KINDS.get(kind)
     return [] if find is None else find((path, placed, table))
@@ -93,7 +93,7 @@ def _second_description(asked: Asked) -> Iterable[str]:
 def _arguments_in(path: Path, pattern: re.Pattern[str]) -> list[str]:
     """Return the arguments that a launch file declares.
 
-    The file is searched as text, because running it takes too long.
+    The file is searched with a regular expression, because running the file takes too long.
     """
     text = path.read_text(encoding="utf-8", errors="replace")
     names = (next(filter(None, found.groups())) for found in pattern.finditer(text))

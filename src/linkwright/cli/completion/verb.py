@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``completion``."""
     from linkwright.cli.completion.scripts import SHELLS
 
     parser.add_argument("shell", metavar="SHELL", choices=tuple(SHELLS), help="bash, zsh or fish")
@@ -22,7 +22,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print the script."""
+    """Print the completion script, and return the exit status."""
     from linkwright.cli.completion.scripts import script
 
     print(script(arguments.shell, sys.executable, ["linkwright"]), end="")

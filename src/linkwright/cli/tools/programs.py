@@ -33,9 +33,9 @@ def _xacro(words: Sequence[str]) -> int:
 
 
 def _check_urdf(words: Sequence[str]) -> int:
-    """Print the output of urdfdom's ``check_urdf``.
+    """Check a URDF file, and print the result as urdfdom's ``check_urdf`` does.
 
-    Other findings are left to ``linkwright check``.
+    Findings of other rules are left to ``linkwright check``.
     """
     if not words:
         print("Expect URDF xml file to parse", file=sys.stderr)

@@ -1,4 +1,4 @@
-"""The command ``ros2``, whose subcommands are Linkwright's commands."""
+"""The command ``ros2``, which runs Linkwright's commands as its subcommands."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``linkwright topic``: the topics of the running graph."""
+"""``linkwright topic``: list, print, publish and measure the topics of the running graph."""
 
 from linkwright.cli.topic.verb import VERBS, configure, run
 

@@ -21,7 +21,7 @@ _CLEAR = "\x1b[H\x1b[2J\x1b[3J"
 
 
 def configure_echo(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``topic echo``."""
     add_session_arguments(parser)
     parser.add_argument("topic_name", metavar="TOPIC", help="the topic, such as /chatter")
     parser.add_argument(
@@ -96,7 +96,7 @@ def run_echo(arguments: argparse.Namespace) -> int:
 
 
 def lost_text(event: Any) -> str:
-    """Return the text that reports lost messages (rclpy ``QoSMessageLostInfo``)."""
+    """Return the text that reports lost messages, given an rclpy ``QoSMessageLostInfo``."""
     return (
         "A message was lost!!!\n"
         f"\ttotal count change:{event.total_count_change}\n"

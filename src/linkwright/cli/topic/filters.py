@@ -1,4 +1,4 @@
-"""The Python expression of ``--filter``, which selects messages ``m``."""
+"""Compiles the Python expression of ``--filter``, which selects messages ``m``."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def compile_filter(text: str) -> Callable[[Any], bool]:
     underscore.
 
     Raises:
-        LinkwrightError: CLI407, the expression is not valid. The predicate raises this error, too, if the expression
+        LinkwrightError: CLI407, the expression is not valid. The predicate raises the same error if the expression
             cannot be evaluated for a message.
     """
     source = SourceText(_NAME, text)
@@ -61,7 +61,9 @@ def compile_filter(text: str) -> Callable[[Any], bool]:
 
     def fits(message: Any) -> bool:
         try:
-            # The syntax tree was checked above: it contains no private names, and only the listed functions.
+            # `eval` is safe here, because the syntax tree was checked above: it contains no private names and only the
+            # listed
+            # functions.
             return bool(eval(code, {"__builtins__": {}, **_NAMES, "m": message}))  # noqa: S307
         except Exception as error:  # noqa: BLE001 - the user's expression may raise anything
             raise fault(phrase("the filter failed: {error}", error=foreign(error))) from None

@@ -32,7 +32,7 @@ _PERIOD = 1.0
 
 
 def configure_hz(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``topic hz``."""
     add_session_arguments(parser)
     parser.add_argument(
         "topic_name", metavar="TOPIC", nargs="+", help="the topics, such as /chatter; several topics give a table"
@@ -46,7 +46,7 @@ def configure_hz(parser: argparse.ArgumentParser) -> None:
 
 
 def run_hz(arguments: argparse.Namespace) -> int:
-    """Print the rate each second until the user interrupts the command.
+    """Print the rate of a topic each second until the user interrupts the command.
 
     Messages are deserialized only if there is a filter.
     """
@@ -57,7 +57,8 @@ def run_hz(arguments: argparse.Namespace) -> int:
         from linkwright.cli.topic.rates import RateWindow, rate_table, rate_text
 
         windows = {name: RateWindow(arguments.window) for name in names}
-        # Use the node's clock only if it may differ from the computer's, because reading it takes longer than counting.
+        # Use the node's clock only with simulated time, because reading this clock takes longer than counting a
+        # message.
         clock = session.node.get_clock()
         now_ns = clock.now_ns if arguments.use_sim_time and not arguments.wall_time else time.monotonic_ns
 
@@ -86,7 +87,7 @@ def run_hz(arguments: argparse.Namespace) -> int:
 
 
 def configure_delay(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``topic delay``."""
     add_session_arguments(parser)
     parser.add_argument("topic_name", metavar="TOPIC", help="a topic whose messages have a header")
     _add_window_argument(parser, _DELAY_WINDOW)
@@ -94,7 +95,7 @@ def configure_delay(parser: argparse.ArgumentParser) -> None:
 
 
 def run_delay(arguments: argparse.Namespace) -> int:
-    """Print the delay each second until the user interrupts the command."""
+    """Print the delay of a topic's messages each second until the user interrupts the command."""
     name = absolute(arguments.topic_name)
 
     async def job(session: Session) -> int:
@@ -127,7 +128,7 @@ def run_delay(arguments: argparse.Namespace) -> int:
 
 
 def configure_bw(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``topic bw``."""
     add_session_arguments(parser)
     parser.add_argument("topic_name", metavar="TOPIC", help="the topic, such as /camera/image_raw")
     _add_window_argument(parser, _SIZE_WINDOW)
@@ -135,7 +136,7 @@ def configure_bw(parser: argparse.ArgumentParser) -> None:
 
 
 def run_bw(arguments: argparse.Namespace) -> int:
-    """Print the bandwidth each second until the user interrupts the command.
+    """Print the bandwidth of a topic each second until the user interrupts the command.
 
     Messages are not deserialized.
     """
@@ -158,7 +159,7 @@ def run_bw(arguments: argparse.Namespace) -> int:
 
 
 def _add_window_argument(parser: argparse.ArgumentParser, default: int) -> None:
-    """Declare the option for the number of messages in the window."""
+    """Declare the option ``--window``, the number of messages in the window."""
     parser.add_argument(
         "-w",
         "--window",
@@ -182,18 +183,23 @@ def _subscribe(
 
     Args:
         session: the session of the command.
-        arguments: the parsed arguments, including the arguments of `add_subscription_qos_arguments`.
+        arguments: the parsed options of `add_subscription_qos_arguments`.
         message_type: the class of the messages.
         name: the absolute name of the topic.
-        callback: receives each message, and its metadata if it has a second parameter; its errors end the command.
-        raw: whether the callback receives bytes instead of messages.
+        callback: receives each message, and its metadata if the callback has a second parameter; its exceptions end the
+            command.
+        raw: whether the callback receives serialized messages.
     """
     profile = fitting_profile(session.node, name, arguments)
     session.node.create_subscription(message_type, name, session.receiver(callback), profile, raw=raw)
 
 
 async def _report_until_finished(session: Session, text: Callable[[], str | None]) -> int:
-    """Print a text each second, if there is one, until the command ends; return the exit status."""
+    """Print the text that `text` returns, if any, each second until the command ends.
+
+    Returns:
+        The exit status.
+    """
 
     def report() -> None:
         line = text()

@@ -1,4 +1,4 @@
-"""``linkwright topic list``, ``info``, ``find`` and ``type``: show topics and their types."""
+"""``linkwright topic list``, ``info``, ``find`` and ``type``: list and describe topics."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _INFINITE_NS = 0x7FFFFFFF_FFFFFFFF
 
 
 def configure_list(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``topic list``."""
     add_session_arguments(parser)
     add_types_argument(parser, types_help="also print the type of each topic")
     add_count_argument(parser, "topic")
@@ -70,7 +70,7 @@ def _counted(title: str, kind: str, topics: Sequence[tuple[str, Sequence[str], i
 
 
 def configure_info(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``topic info``."""
     add_session_arguments(parser)
     parser.add_argument("topic_name", metavar="TOPIC", help="the topic, such as /chatter")
     parser.add_argument(
@@ -101,7 +101,7 @@ def run_info(arguments: argparse.Namespace) -> int:
 
 
 def configure_find(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``topic find``."""
     add_session_arguments(parser)
     parser.add_argument("topic_type", metavar="TYPE", help="the type, such as std_msgs/msg/String")
     add_count_argument(parser, "topic")
@@ -114,20 +114,20 @@ def run_find(arguments: argparse.Namespace) -> int:
 
 
 def configure_type(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``topic type``."""
     add_session_arguments(parser)
     parser.add_argument("topic_name", metavar="TOPIC", help="the topic, such as /chatter")
 
 
 def run_type(arguments: argparse.Namespace) -> int:
-    """Print the types in use on a topic, one per line."""
+    """Print the types of a topic, one per line."""
     return _TOPICS.print_types(arguments, arguments.topic_name, hidden=arguments.include_hidden_topics)
 
 
 def endpoint_text(info: Any) -> str:
-    """Format an endpoint (rclpy ``TopicEndpointInfo``) as a text of several lines.
+    """Return several lines that describe an endpoint (rclpy ``TopicEndpointInfo``).
 
-    The type hash is shown if the other side announces it, which Humble does not.
+    The type hash is included only if the endpoint's process announces it. Humble does not announce type hashes.
     """
     lines = [
         f"Node name: {info.node_name}",
@@ -146,7 +146,7 @@ def endpoint_text(info: Any) -> str:
 
 
 def qos_lines(qos: QoSProfile) -> list[str]:
-    """Return lines that show the policies of a QoS profile, one per line."""
+    """Return one output line for each policy of a QoS profile."""
     history = qos.history.name
     if history == "KEEP_LAST":
         history = f"{history} ({qos.depth})"

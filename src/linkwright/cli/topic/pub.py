@@ -27,7 +27,7 @@ _Filled = tuple[Any, list[Callable[[Any], None]]]
 
 
 def configure_pub(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``topic pub``."""
     add_session_arguments(parser)
     parser.add_argument("topic_name", metavar="TOPIC", help="the topic, such as /chatter")
     parser.add_argument("message_type", metavar="TYPE", help="the type, such as std_msgs/msg/String")
@@ -71,7 +71,7 @@ def configure_pub(parser: argparse.ArgumentParser) -> None:
 
 
 def run_pub(arguments: argparse.Namespace) -> int:
-    """Publish until the user interrupts the command, or the requested number of times."""
+    """Publish the requested number of times, or until the user interrupts the command."""
     from linkwright.messages import get_message
 
     name = absolute(arguments.topic_name)
@@ -104,7 +104,11 @@ def run_pub(arguments: argparse.Namespace) -> int:
 
 
 async def _wait_for(session: Session, publisher: Publisher[Any], wanted: int, longest: float | None) -> bool:
-    """Wait for subscriptions, and print a message each second."""
+    """Wait for `wanted` subscriptions, and print a line each second.
+
+    Returns:
+        Whether the subscriptions matched within `longest` seconds; None means no limit.
+    """
     waited = 0.0
     while publisher.get_subscription_count() < wanted:
         if longest is not None and waited >= longest:

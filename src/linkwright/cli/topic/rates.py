@@ -1,4 +1,4 @@
-"""The statistics that ``topic hz``, ``topic delay`` and ``topic bw`` print, and their texts."""
+"""The statistics of ``topic hz``, ``topic delay`` and ``topic bw``, and their output."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Spread:
 
     @classmethod
     def of(cls, durations: Iterable[float]) -> Spread:
-        """Compute the statistics of one or more durations."""
+        """Compute the statistics of durations in nanoseconds; at least one is required."""
         values = list(durations)
         mean = sum(values) / len(values)
         deviation = math.sqrt(sum((value - mean) ** 2 for value in values) / len(values))
@@ -63,7 +63,11 @@ class RateWindow:
         self._new = False
 
     def add(self, now_ns: int) -> bool:
-        """Count a message, and return whether time jumped back and the window was reset."""
+        """Add the arrival of a message.
+
+        Returns:
+            Whether the time jumped back, which resets the window.
+        """
         last, self._last, self._new = self._last, now_ns, True
         if last is None:
             return False
@@ -94,7 +98,7 @@ class DelayWindow:
         self._new = False
 
     def add(self, now_ns: int, stamp_ns: int) -> None:
-        """Add the delay of a message."""
+        """Add the delay of a message, from its stamp to its arrival."""
         if self._last is not None and now_ns < self._last:
             self._delays.clear()
         self._last, self._new = now_ns, True
@@ -115,7 +119,7 @@ class BandwidthWindow(TrafficWindow):
     """The sizes of the most recent messages of a topic, for ``topic bw``."""
 
     def text(self, now_ns: int) -> str | None:
-        """Return the output of ``topic bw``, or None with fewer than two messages."""
+        """Return the output of ``topic bw``, or None if fewer than two messages have arrived."""
         traffic = self.traffic(now_ns)
         if traffic is None:
             return None
@@ -126,7 +130,7 @@ class BandwidthWindow(TrafficWindow):
 
 
 def _unit_for(bytes_each_second: float) -> Callable[[float], str]:
-    """Return a function that formats byte counts in the unit that suits a rate, as ros2 does."""
+    """Return a function that formats byte counts as ros2 does, in a unit chosen for a bandwidth."""
     scale, digits, name = next(unit for limit, unit in _UNITS if bytes_each_second < limit)
     return lambda size: f"{size / scale:.{digits}f} {name}"
 
@@ -143,7 +147,7 @@ _HEADER = ("topic", "rate", "min_delta", "max_delta", "stddev", "window")
 
 
 def rate_table(spreads: Mapping[str, Spread]) -> str:
-    """Return the table of ``topic hz`` for several topics."""
+    """Return the output of ``topic hz`` for several topics, as a table."""
     rows = [
         (
             topic,

@@ -30,6 +30,6 @@ run = run_nested
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the subcommands of ``topic``."""
     parser.add_argument("--include-hidden-topics", action="store_true", help="consider hidden topics as well")
     configure_nested(parser, VERBS)

@@ -23,7 +23,7 @@ _LARGEST_FILE = 200_000_000
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``vision detect``."""
     parser.add_argument("images", metavar="IMAGE", nargs="+", help="PNG and JPEG files")
     parser.add_argument(
         "-m",
@@ -60,7 +60,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print the detections in each image; images that cannot be read are reported and skipped."""
+    """Print the detections in each image.
+
+    An image that cannot be read is reported and skipped.
+    """
     from linkwright.vision.detector import Limits
     from linkwright.vision.detectors.markers import MarkerDetector
     from linkwright.vision.detectors.options import DetectorOptions
@@ -159,7 +162,10 @@ def _draw(image: NDArray[np.uint8], found: Detections, folder: Path, stem: str) 
 
 
 def _unused(stem: str, written: set[str]) -> str:
-    """Return a name for a result file that is not yet used."""
+    """Return a unique name for a result file, and add it to `written`.
+
+    If the name `stem` is already in use, a number is appended.
+    """
     name, number = stem, 2
     while name in written:
         name, number = f"{stem}-{number}", number + 1

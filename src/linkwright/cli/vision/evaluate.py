@@ -11,7 +11,7 @@ from linkwright.cli.endings import FINE
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``vision evaluate``."""
     parser.add_argument("model", metavar="MODEL", help="an ONNX file, or the name of a detector")
     parser.add_argument(
         "dataset",
@@ -27,7 +27,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print the evaluation of a detector."""
+    """Evaluate a detector, and print the results."""
     from linkwright.vision.training.card import confusion, table
     from linkwright.vision.training.teaching import judge
 

@@ -21,7 +21,7 @@ _CELL = 32
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
+    """Declare the arguments of ``vision train``."""
     parser.add_argument(
         "dataset",
         metavar="DATASET",
@@ -93,7 +93,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Train a network, and print its evaluation."""
+    """Train a network, evaluate it, and print the results."""
     from linkwright.vision.training.card import table
     from linkwright.vision.training.options import Options
     from linkwright.vision.training.teaching import teach

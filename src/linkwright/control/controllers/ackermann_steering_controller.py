@@ -1,4 +1,4 @@
-"""``ackermann_steering_controller/AckermannSteeringController``: two driven, two steered wheels."""
+"""``ackermann_steering_controller/AckermannSteeringController``: two driven wheels and two steered wheels."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.nodes.parameter_tables import HUMBLE, JAZZY, parameter
 
 @dataclass(frozen=True, kw_only=True)
 class Parameters(SteeringParameters):
-    """The parameters of the controller: those of all steered vehicles, and its dimensions."""
+    """The parameters shared by all steered vehicles, and the dimensions of this vehicle."""
 
     traction_wheels_radius: float = parameter(0.0, description="of the wheels that drive, in m", only=JAZZY)
     traction_track_width: float = parameter(0.0, description="between the wheels that drive, in m", only=JAZZY)
@@ -23,17 +23,14 @@ class Parameters(SteeringParameters):
 
 
 class AckermannSteeringController(SteeringController[Parameters]):
-    """A car with two driven rear wheels and two steered front wheels."""
+    """A controller of a car with two driven rear wheels and two steered front wheels."""
 
     PARAMETERS = Parameters
     KIND = "Ackermann"
     JOINTS = (2, 2)
 
     def drive(self) -> CarDrive:
-        """Return the drive with the dimensions from the parameters.
-
-        The parameters have their current or their older names.
-        """
+        """Return the drive with the dimensions in the parameters, under current or older names."""
         parameters = self.parameters
         traction = parameters.traction_track_width or parameters.of_traction(
             parameters.front_wheel_track, parameters.rear_wheel_track

@@ -15,7 +15,7 @@ from linkwright.graph.actions.server import ActionServer
 
 
 class _Server(ActionServer):
-    """An action server that reports cancel requests after it has handled them itself.
+    """An action server that reports cancel requests after the base class has handled them.
 
     The order matters because a goal may end as soon as the request is reported.
     """
@@ -31,7 +31,7 @@ class _Server(ActionServer):
 class Goal:
     """An accepted goal, for use in the update thread.
 
-    It ends with the first call of `succeed`, `abort` or `cancel`; later calls have no effect.
+    The goal ends with the first call of `succeed`, `abort` or `cancel`; later calls have no effect.
 
     Attributes:
         request: the goal message.
@@ -45,11 +45,11 @@ class Goal:
         self._node = node
 
     def belongs_to(self, handle: ServerGoalHandle) -> bool:
-        """Return whether this is the goal of a handle."""
+        """Return whether the goal is that of a handle."""
         return self._handle is handle
 
     def feedback(self, message: Any) -> None:
-        """Publish feedback."""
+        """Publish a feedback message for the goal."""
         self._node.call_on_loop(partial(self._handle.publish_feedback, message))
 
     def succeed(self, result: Any) -> None:
@@ -61,7 +61,7 @@ class Goal:
         self._end(self._handle.abort, result)
 
     def cancel(self, result: Any) -> None:
-        """End the goal with the status canceled, whether or not its client requested that."""
+        """End the goal with the status canceled, even if its client did not request that."""
         self._end(self._canceled, result)
 
     def _canceled(self, result: Any) -> None:
@@ -88,7 +88,7 @@ class ControllerAction:
         name: the action's name.
         is_allowed: returns whether a goal message is accepted; called on the event loop.
         begin: called with each accepted goal, in the update thread.
-        cancel: called with the goal to be cancelled, in the update thread; only with the goal that `begin` received
+        cancel: called with the goal to be cancelled, in the update thread, if this is the goal that `begin` received
             last.
     """
 

@@ -1,4 +1,4 @@
-"""``bicycle_steering_controller/BicycleSteeringController``: one driven wheel, one steered wheel."""
+"""``bicycle_steering_controller/BicycleSteeringController``: one driven wheel and one steered wheel."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.nodes.parameter_tables import HUMBLE, JAZZY, parameter
 
 @dataclass(frozen=True, kw_only=True)
 class Parameters(SteeringParameters):
-    """The parameters of the controller: those of all steered vehicles, and its dimensions."""
+    """The parameters shared by all steered vehicles, and the dimensions of this vehicle."""
 
     traction_wheel_radius: float = parameter(0.0, description="of the wheel that drives, in m", only=JAZZY)
     front_wheel_radius: float = parameter(0.0, description="of the wheel in front, in m", only=HUMBLE)
@@ -19,17 +19,14 @@ class Parameters(SteeringParameters):
 
 
 class BicycleSteeringController(SteeringController[Parameters]):
-    """A bicycle with a driven rear wheel and a steered front wheel."""
+    """A controller of a bicycle with a driven rear wheel and a steered front wheel."""
 
     PARAMETERS = Parameters
     KIND = "Bicycle"
     JOINTS = (1, 1)
 
     def drive(self) -> CarDrive:
-        """Return the drive with the dimensions from the parameters.
-
-        The parameters have their current or their older names.
-        """
+        """Return the drive with the dimensions in the parameters, under current or older names."""
         parameters = self.parameters
         radius = parameters.traction_wheel_radius or parameters.of_traction(
             parameters.front_wheel_radius, parameters.rear_wheel_radius

@@ -47,7 +47,7 @@ InterfaceNames = Sequence[str] | Interfaces
 
 
 class ControllerError(LinkwrightError):
-    """Raised by a controller that refuses to be configured or activated; its text is logged.
+    """Raised by a controller that refuses to be configured or activated; the message is logged.
 
     Args:
         message: what is wrong, and how to fix it.
@@ -59,10 +59,10 @@ class ControllerError(LinkwrightError):
 
 @dataclass(frozen=True, slots=True)
 class ControllerPlace:
-    """The node, parameters and description that a manager passes to a controller.
+    """The node, update rate and description that a manager passes to a controller.
 
     Attributes:
-        name: the controller's name, which is also that of its node.
+        name: the name of the controller and of its node.
         node: the controller's node.
         update_rate: how often the controller is updated, in Hz.
         robot_description: the URDF of the robot; empty if none is known.
@@ -75,7 +75,7 @@ class ControllerPlace:
 
 
 class Controller(ABC, Generic[P]):
-    """A controller, which computes commands from states in each update.
+    """The base class of controllers, which compute commands from states in each update.
 
     Args:
         place: the node and settings that the manager provides.
@@ -91,7 +91,7 @@ class Controller(ABC, Generic[P]):
         robot_description: the URDF of the robot; empty if none is known.
         commands: the command interfaces available while the controller is active, in the order of `command_interfaces`.
         states: the state interfaces, in the order of `state_interfaces`.
-        references: the inputs for another controller in chained mode, see `reference_interfaces`.
+        references: the inputs that another controller may command, see `reference_interfaces`.
         exported: the states for other controllers, see `exported_states`.
         chained: whether another controller commands the references.
         time_ns: the time of the latest update, in nanoseconds.
@@ -119,25 +119,25 @@ class Controller(ABC, Generic[P]):
 
     @classmethod
     def variant(cls, given: Collection[str]) -> type[Controller[Any]]:  # noqa: ARG003 - for those that share a name
-        """Return the controller class that fits the names of the given parameters.
+        """Return the controller class for which the given parameters are intended.
 
-        This is another class if two packages use the same type name.
+        If two packages use the same type name, the class may be another one than this.
         """
         return cls
 
     @property
     def parameters(self) -> P:
-        """The current parameters; read parameters that may change at run time again for each use."""
+        """The current parameters; read again for each use, because they may change at run time."""
         return self._parameters.values
 
     @cached_property
     def robot(self) -> Robot | None:
-        """The robot; None if no description is known, or if it cannot be parsed."""
+        """The parsed robot description; None if no description is known or it cannot be parsed."""
         from linkwright.descriptions import DescriptionLibrary
 
         return DescriptionLibrary().read(self.robot_description).robot if self.robot_description else None
 
-    # --- interfaces that it claims and exports, read after `on_configure` --------------------------------------------
+    # --- claimed and exported interfaces, read after `on_configure` --------------------------------------------------
 
     def command_interfaces(self) -> InterfaceNames:
         """Return the names of the command interfaces that the controller claims while it is active."""
@@ -155,7 +155,10 @@ class Controller(ABC, Generic[P]):
         return ()
 
     def exported_states(self) -> Sequence[str]:
-        """Return the names, without the controller's name, of the states that other controllers may read."""
+        """Return the names of the states that other controllers may read.
+
+        The names do not include the controller's name.
+        """
         return ()
 
     # --- lifecycle ----------------------------------------------------------------------------------------------------
@@ -168,23 +171,26 @@ class Controller(ABC, Generic[P]):
         """
 
     def on_activate(self) -> None:
-        """Start; `commands` and `states` are available from now on.
+        """Start the controller; `commands` and `states` are available from now on.
 
         Raises:
             ControllerError: the controller cannot be activated; it stays inactive.
         """
 
     def on_deactivate(self) -> None:
-        """Set safe commands, such as zero velocity, and stop.
+        """Write safe commands, such as zero velocity.
 
         Afterwards `commands` and `states` are no longer available.
         """
 
     def on_cleanup(self) -> None:
-        """Release the resources of `on_configure`; topics and services are removed automatically."""
+        """Release the resources of `on_configure`, except topics and services.
+
+        Topics and services are removed automatically.
+        """
 
     def on_error(self) -> None:
-        """Handle an error other than ControllerError that occurred in another callback or in an update."""
+        """Handle an exception, other than `ControllerError`, of another callback or an update."""
 
     def on_set_chained_mode(self, chained: bool) -> None:
         """Handle a change of chained mode, in which another controller commands the references.
@@ -198,7 +204,7 @@ class Controller(ABC, Generic[P]):
     def update_references(self, time_ns: int, period_s: float) -> None:
         """Copy commands from topics into `references`.
 
-        This is called before `update` unless another controller sets the references.
+        This is called before `update` unless another controller commands the references.
         """
 
     def update(self, time_ns: int, period_s: float) -> None:
@@ -213,7 +219,7 @@ class Controller(ABC, Generic[P]):
         """
 
     def step(self, time_ns: int, period_s: float) -> None:
-        """Run an update: `update_references` unless the controller is chained, then `update`."""
+        """Run an update: first `update_references` if no controller commands them, then `update`."""
         self.time_ns = time_ns
         if not self.chained and self.references:
             self.update_references(time_ns, period_s)

@@ -1,4 +1,4 @@
-"""``diff_drive_controller/DiffDriveController``: differential drive with wheels on two sides.
+"""``diff_drive_controller/DiffDriveController``: a differential drive with wheels on two sides.
 
 Source: ros2_controllers for Humble and Jazzy (parameters, defaults, topics, messages). Three things differ: open-loop
 odometry integrates the limited velocity, wheels may start at any angle, and a command that is not a number stops the
@@ -22,7 +22,7 @@ from linkwright.nodes.parameter_tables import HUMBLE, above, parameter
 
 @dataclass(frozen=True, kw_only=True)
 class LinearLimits:
-    """The limits of linear velocities."""
+    """The limits of the forward velocity."""
 
     x: SpeedLimits = NO_LIMITS
 
@@ -43,7 +43,10 @@ class Parameters(LimitedDriveParameters):
 
 
 class DiffDriveController(LimitedDrive[Parameters]):
-    """A differential drive: computes wheel velocities from commands, and odometry from the wheels."""
+    """A controller of a differential drive.
+
+    Wheel velocities are computed from velocity commands, and odometry from the states of the wheels.
+    """
 
     PARAMETERS = Parameters
 
@@ -53,7 +56,7 @@ class DiffDriveController(LimitedDrive[Parameters]):
         return [f"{wheel}/{VELOCITY}" for wheel in (*parameters.left_wheel_names, *parameters.right_wheel_names)]
 
     def state_interfaces(self) -> InterfaceNames:
-        """Return the position or velocity interfaces of the wheels; none in open loop."""
+        """Return the position or velocity interfaces of the wheels, or none for open-loop odometry."""
         parameters = self.parameters
         if parameters.open_loop:
             return ()
@@ -72,7 +75,7 @@ class DiffDriveController(LimitedDrive[Parameters]):
         """Check the parameters, and create the topics.
 
         Raises:
-            ControllerError: wheels or their dimensions are missing, or a limit is wrong.
+            ControllerError: wheels or their dimensions are missing, or a limit is invalid.
         """
         self._check_wheels()
         parameters = self.parameters
@@ -103,7 +106,7 @@ class DiffDriveController(LimitedDrive[Parameters]):
                 raise ControllerError(wrong)
 
     def update_references(self, time_ns: int, period_s: float) -> None:
-        """Copy the command into the references; zero if it is missing or too old."""
+        """Copy the velocity command into the references, or zero if it is missing or too old."""
         velocity = self._input.velocity(time_ns) or (0.0, 0.0, 0.0)
         forward, angular = self.references
         forward.value, angular.value = velocity[0], velocity[2]

@@ -16,7 +16,9 @@ _AXES = 6
 
 
 def variances(name: str, values: tuple[float, ...]) -> Variances:
-    """Expand a parameter to variances of x, y, z, roll, pitch and yaw.
+    """Check that a parameter has six values, and return them as variances.
+
+    The order is x, y, z, roll, pitch, yaw.
 
     Raises:
         ControllerError: the parameter does not have six values.
@@ -29,7 +31,9 @@ def variances(name: str, values: tuple[float, ...]) -> Variances:
 
 
 def frame_prefix(node: ControllerNode, prefix: str, *, enabled: bool = True) -> str:
-    """Return the prefix of frame names: empty, or a name with a trailing slash and no leading slash.
+    """Return the prefix of frame names, which is empty or ends with a slash.
+
+    The prefix never begins with a slash.
 
     Args:
         node: the controller's node.
@@ -46,7 +50,7 @@ def frame_prefix(node: ControllerNode, prefix: str, *, enabled: bool = True) -> 
 
 
 class DriveOdometry:
-    """The odometry of a drive: an odometer and its topics.
+    """The odometry of a drive, with the topics on which it is published.
 
     Args:
         node: the controller's node.
@@ -57,11 +61,11 @@ class DriveOdometry:
         of_pose, of_velocity: the variances of pose and velocity.
         publishes_transforms: whether transforms are published; their topic exists in any case.
         publishes_pose: whether odometry messages contain the pose; otherwise they contain only velocities.
-        window: the window of the odometer.
-        rate: the publishing rate in Hz; 0 publishes at each update.
+        window: the number of updates over which the odometer averages velocities.
+        rate: the publishing rate in Hz; 0 to publish at each update.
 
     Attributes:
-        odometer: the source of the robot's pose.
+        odometer: the source of the robot's pose and velocity.
     """
 
     def __init__(
@@ -89,7 +93,10 @@ class DriveOdometry:
         self._published_ns: int | None = None
 
     def publish(self, time_ns: int) -> None:
-        """Publish if a message is due at the given time, in nanoseconds, and a subscription exists."""
+        """Publish the odometry if the period has passed and a subscription exists.
+
+        `time_ns` is the current time in nanoseconds.
+        """
         if not self._is_due(time_ns):
             return
         wanted = self._topics.is_wanted
@@ -111,7 +118,10 @@ class DriveOdometry:
         return True
 
     def serve(self, node: ControllerNode) -> None:
-        """Offer the service ``~/set_odometry`` (``control_msgs/srv/SetOdometry``), which sets the pose."""
+        """Offer the service ``~/set_odometry``, which resets the pose.
+
+        The service type is ``control_msgs/srv/SetOdometry``.
+        """
 
         def asked(request: Any, response: Any) -> Any:
             self.odometer.reset(request.x, request.y, request.yaw)

@@ -1,6 +1,4 @@
-"""Controllers that forward commands to interfaces.
-
-These are ``forward_command_controller``, and the groups derived from it.
+"""Controllers that forward commands to interfaces, alone or in groups.
 
 Source: forward_command_controller, position_controllers, velocity_controllers and effort_controllers of
 ros2_controllers (parameters, topics, messages; velocities and efforts are 0 after deactivation).
@@ -44,11 +42,15 @@ class GroupParameters:
 
 
 class _Forwarding(Controller[P], Generic[P]):
-    """Forwards the last message of ``~/commands`` to the commanded interfaces."""
+    """The base class of controllers that forward ``~/commands`` to interfaces."""
 
     @abstractmethod
     def _names(self) -> Sequence[str]:
-        """Return the names of the commanded interfaces."""
+        """Return the names of the commanded interfaces.
+
+        Raises:
+            ControllerError: a parameter is empty.
+        """
 
     def command_interfaces(self) -> InterfaceNames:
         """Return the names of the commanded interfaces."""
@@ -78,9 +80,9 @@ class _Forwarding(Controller[P], Generic[P]):
             command.value = value
 
     def _command_rest(self) -> bool:
-        """Set commanded velocities to zero, and hold positions and efforts.
+        """Set commanded velocities to zero, and leave commanded positions and efforts as they are.
 
-        Returns whether any velocity was not zero.
+        Returns whether any commanded velocity was not zero.
         """
         if self._wanted is None:
             return False
@@ -92,7 +94,7 @@ class _Forwarding(Controller[P], Generic[P]):
     def _on_command(self, message: Any) -> None:
         wanted, count = list(message.data), len(self.commands)
         if not count:
-            return  # the controller is not active
+            return  # Commands are ignored while the controller is not active.
         if len(wanted) != count:
             self.node.logger.error(
                 f"command size ({len(wanted)}) does not match number of interfaces ({count})",
@@ -144,7 +146,7 @@ class _Group(_Forwarding[GroupParameters]):
         return [f"{joint}/{self.INTERFACE}" for joint in self.parameters.joints]
 
     def on_deactivate(self) -> None:
-        """Command zero to the joints, unless they are commanded by position."""
+        """Command zero to the joints, unless their positions are commanded."""
         super().on_deactivate()
         if self.STOPS:
             for command in self.commands:
@@ -155,7 +157,7 @@ class JointGroupPositionController(_Group):
     """``position_controllers/JointGroupPositionController``."""
 
     INTERFACE = POSITION
-    STOPS = False  # joints stay where they are
+    STOPS = False  # Joints keep their positions.
 
 
 class JointGroupVelocityController(_Group):

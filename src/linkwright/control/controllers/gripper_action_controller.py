@@ -1,8 +1,8 @@
 """Gripper controllers, which open and close a gripper by an action.
 
 ``position_controllers/GripperActionController`` forwards the position, ``effort_controllers/GripperActionController``
-computes an effort from it by PID, and ``parallel_gripper_action_controller/GripperActionController`` also forwards the
-maximum effort and velocity.
+computes an effort by PID from the position error, and ``parallel_gripper_action_controller/GripperActionController``
+also forwards the maximum effort and velocity.
 
 Source: ros2_controllers (parameters, actions, when a goal is reached and when the gripper is stalled).
 """
@@ -60,7 +60,7 @@ P = TypeVar("P", bound=GripperParameters)
 
 
 class Gripper(Controller[P]):
-    """The base of gripper controllers, which handles goals and decides when they end."""
+    """The base class of gripper controllers, which handles goals and decides when they end."""
 
     ACTION: ClassVar[str] = "control_msgs/action/GripperCommand"
 
@@ -93,7 +93,7 @@ class Gripper(Controller[P]):
         self._active = True
 
     def on_deactivate(self) -> None:
-        """Abort the goal."""
+        """Cancel the active goal."""
         self._active = False
         self._give_up()
 
@@ -102,7 +102,7 @@ class Gripper(Controller[P]):
         self._action.close()
 
     def update(self, time_ns: int, period_s: float) -> None:
-        """Command the gripper, and check whether the goal is reached."""
+        """Command the gripper, and end the goal if it is reached or the gripper is stalled."""
         position, velocity = self._position_state.value, self._velocity_state.value
         effort = self._command(self._wanted - position, velocity, period_s)
         goal = self._goal
@@ -161,26 +161,29 @@ class Gripper(Controller[P]):
         self._wanted = self._position_state.value
         self._max_effort = self.parameters.max_effort
 
-    # --- differences between the grippers -----------------------------------------------------------------------------
+    # --- steps that differ between grippers ---------------------------------------------------------------------------
 
     def _objection(self, request: Any) -> str | None:
-        """Return the reason for refusing a goal; None if it is valid."""
+        """Return the error message for an invalid goal, or None if the goal is valid."""
         if isfinite(request.command.position):
             return None
         return "Received action goal with a position that is not a number"
 
     def _accept(self, request: Any) -> None:
-        """Store the values of a goal."""
+        """Store the position and maximum effort of a goal."""
         self._wanted = request.command.position
         self._max_effort = request.command.max_effort
 
     def _command(self, error: float, velocity: float, period_s: float) -> float:
-        """Command the gripper, and return the effort to be reported, which is the maximum effort here."""
+        """Write the commands, and return the effort to be reported.
+
+        Here, this is the maximum effort.
+        """
         self.commands[0].value = self._wanted
         return self._max_effort
 
     def _report(self, message: Any, position: float, velocity: float, effort: float) -> Any:
-        """Fill in a result or feedback message."""
+        """Set the fields of a result or feedback message, and return the message."""
         message.position, message.effort = position, effort
         return message
 
@@ -206,7 +209,7 @@ class EffortGripper(Gripper[EffortGripperParameters]):
         super().on_activate()
 
     def on_deactivate(self) -> None:
-        """Command zero effort."""
+        """Cancel the active goal, and command zero effort."""
         super().on_deactivate()
         self.commands[0].value = 0.0
 
@@ -227,7 +230,7 @@ class ParallelGripper(Gripper[ParallelGripperParameters]):
     ACTION = "control_msgs/action/ParallelGripperCommand"
 
     def command_interfaces(self) -> InterfaceNames:
-        """Return the joint's position interface, and those of maximum effort and velocity if configured."""
+        """Return the interfaces of position, and of maximum effort and velocity if named."""
         parameters = self.parameters
         more = [name for name in (parameters.max_effort_interface, parameters.max_velocity_interface) if name]
         return [f"{parameters.joint}/{POSITION}", *more]

@@ -1,9 +1,7 @@
-"""Husarion's ``mecanum_drive_controller/MecanumDriveController``.
+"""Husarion's ``mecanum_drive_controller/MecanumDriveController``, for the robots ROSbot XL and Panther.
 
-The controller of ros2_controllers has the same type name.
-
-Robots of Husarion (ROSbot XL, Panther) use it. It has the parameters and topics of diff_drive_controller, with four
-named wheels.
+A different controller of ros2_controllers has the same type name. Husarion's has the parameters and topics of
+diff_drive_controller, with four named wheels.
 
 Source: husarion_controllers (parameters, defaults, topics). Two things differ: odometry multiplies the wheelbase by its
 own multiplier, as the wheel commands do, and a wheel state that is not a number leaves the odometry unchanged.
@@ -53,9 +51,10 @@ class Parameters(LimitedDriveParameters):
 
 
 class HusarionMecanumController(LimitedDrive[Parameters]):
-    """A mecanum drive: computes wheel velocities from commands, and odometry from the wheels.
+    """A controller of a mecanum drive.
 
-    Commands may include a sideways velocity.
+    Wheel velocities are computed from velocity commands, which may be sideways, and odometry from the states of the
+    wheels.
     """
 
     PARAMETERS = Parameters
@@ -70,7 +69,7 @@ class HusarionMecanumController(LimitedDrive[Parameters]):
         return self._wheels(VELOCITY)
 
     def state_interfaces(self) -> InterfaceNames:
-        """Return the position or velocity interfaces of the wheels; none in open loop."""
+        """Return the position or velocity interfaces of the wheels, or none for open-loop odometry."""
         if self.parameters.open_loop:
             return ()
         return self._wheels(POSITION if self.parameters.position_feedback else VELOCITY)
@@ -84,7 +83,7 @@ class HusarionMecanumController(LimitedDrive[Parameters]):
         """Check the parameters, and create the topics.
 
         Raises:
-            ControllerError: wheels or their dimensions are missing, or a limit is wrong.
+            ControllerError: wheels or their dimensions are missing, or a limit is invalid.
         """
         self._check()
         parameters = self.parameters

@@ -1,4 +1,4 @@
-"""``joint_state_broadcaster/JointStateBroadcaster``: publishes the states of joints.
+"""``joint_state_broadcaster/JointStateBroadcaster``, which publishes the states of joints.
 
 Source: ros2_controllers (parameters, defaults, topics, NaN for missing states of a joint). Joints are in the order of
 the hardware.
@@ -40,25 +40,25 @@ class Parameters:
 
 
 class JointStateBroadcaster(Controller[Parameters]):
-    """Publishes ``joint_states`` and ``dynamic_joint_states``."""
+    """A broadcaster that publishes ``joint_states`` and ``dynamic_joint_states``."""
 
     PARAMETERS = Parameters
 
     def state_interfaces(self) -> InterfaceNames:
-        """Return all interfaces, or those that the parameters name."""
+        """Return the state interfaces named by the parameters, or all if none is named."""
         joints, interfaces = self.parameters.joints, self.parameters.interfaces
         if not joints or not interfaces:
             return Interfaces.ALL
         return [f"{joint}/{interface}" for joint in joints for interface in interfaces]
 
     def on_configure(self) -> None:
-        """Create the topics."""
+        """Create the publishers."""
         begin = "~/" if self.parameters.use_local_topics else ""
         self._output = self.node.publisher("sensor_msgs/msg/JointState", f"{begin}joint_states")
         self._dynamic = self.node.publisher("control_msgs/msg/DynamicJointState", f"{begin}dynamic_joint_states")
 
     def on_activate(self) -> None:
-        """Determine which interfaces fill which fields."""
+        """Assign the state interfaces to joints and message fields."""
         named = self.parameters.map_interface_to_joint_state
         fields = {named.position: 0, named.velocity: 1, named.effort: 2}
         self._of: dict[str, dict[str, StateInterface]] = {}
@@ -75,7 +75,8 @@ class JointStateBroadcaster(Controller[Parameters]):
             [*(of_joint[place] or unknown for of_joint in joints.values()), *(none for _ in self._extra)]
             for place in range(3)
         ]
-        # A field that no joint provides, often the efforts, is the same in each message.
+        # A field that no joint provides, often the efforts, is the same in each message, so its values are computed
+        # once.
         self._columns = [
             (column, _values(column) if {unknown, none}.issuperset(column) else None) for column in columns
         ]
@@ -109,8 +110,8 @@ class JointStateBroadcaster(Controller[Parameters]):
 
 
 def _values(states: Sequence[StateInterface]) -> array[float]:
-    """Return values as an array for a message field.
+    """Return the values of states as an array for a message field.
 
-    The elements of a list would be checked one by one.
+    An array is faster than a list, whose elements the message would check one by one.
     """
     return array("d", [state.value for state in states])

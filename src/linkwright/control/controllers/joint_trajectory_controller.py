@@ -1,7 +1,8 @@
-"""``joint_trajectory_controller/JointTrajectoryController``: lets joints follow trajectories.
+"""``joint_trajectory_controller/JointTrajectoryController``, which moves joints along trajectories.
 
 Source: ros2_controllers (parameters, topics, action, service, times of commands, tolerances, messages). The controller
-commands the point that is due at the next update, and checks the tolerances at the point that is due now.
+commands the state that the trajectory has at the next update, and checks the tolerances against the state at the
+current time.
 """
 
 from __future__ import annotations
@@ -40,9 +41,9 @@ _ACTION = "control_msgs/action/FollowJointTrajectory"
 
 
 class JointTrajectoryController(Controller[Parameters]):
-    """Follows trajectories from ``~/joint_trajectory`` and ``~/follow_joint_trajectory``.
+    """A controller that follows trajectories.
 
-    The former is a topic, the latter an action.
+    Trajectories are received on the topic ``~/joint_trajectory`` and by the action ``~/follow_joint_trajectory``.
     """
 
     PARAMETERS = Parameters
@@ -119,7 +120,7 @@ class JointTrajectoryController(Controller[Parameters]):
         self._active = True
 
     def on_deactivate(self) -> None:
-        """Hold the last positions, with zero velocity, acceleration and effort."""
+        """Cancel the active goal, and command zero velocity, acceleration and effort."""
         self._active = False
         self._give_up("Current goal cancelled during deactivate transition.")
         for kind in (VELOCITY, ACCELERATION, EFFORT):
@@ -207,9 +208,9 @@ class JointTrajectoryController(Controller[Parameters]):
             self._goal = None
 
     def _held_positions(self) -> list[float]:
-        """Return the positions to hold for joints that a trajectory leaves out.
+        """Return the positions for joints that a trajectory leaves out, in the order of the joints.
 
-        These are the last commands, or the current positions of joints without a command.
+        These are the last commanded positions, or the current ones if they are not commanded.
         """
         return self._finite_or(self._command.get(POSITION), self._current.positions)
 
@@ -218,7 +219,7 @@ class JointTrajectoryController(Controller[Parameters]):
         self._following_ns = -1
 
     def _hold(self, state: MotionState | None = None) -> None:
-        """Hold the joints at their current state, or at the given state."""
+        """Hold the joints in the given state, or at their current positions."""
         held = MotionState(self._read().positions) if state is None else state
         self._follow(Trajectory([TrajectoryPoint(0, held)]))
         self._is_held = True
@@ -237,7 +238,7 @@ class JointTrajectoryController(Controller[Parameters]):
     def _as_commanded(self, state: MotionState) -> MotionState:
         """Return a state with the last commands in place of measurements.
 
-        Otherwise hardware that sags under load would be commanded to the sagged position.
+        This keeps hardware that sags under load from being commanded to the sagged position.
         """
         return MotionState(
             self._finite_or(self._command.get(POSITION), state.positions),
@@ -261,9 +262,9 @@ class JointTrajectoryController(Controller[Parameters]):
         return self._computed_error
 
     def _compare(self, desired: MotionState) -> MotionState:
-        """Return the error against a desired state.
+        """Return the error of the current state: the desired values minus the current ones.
 
-        Errors of velocities or accelerations that are not compared are zero.
+        Errors of velocities and accelerations are zero if the controller does not control them.
         """
         current = self._current
         positions = [
@@ -284,7 +285,7 @@ class JointTrajectoryController(Controller[Parameters]):
     # --- updates ------------------------------------------------------------------------------------------------------
 
     def update(self, time_ns: int, period_s: float) -> None:
-        """Command the point that is due at the next update, and check errors against tolerances."""
+        """Command the state that is desired at the next update, and check the tolerances."""
         if time_ns < self._following_ns - self._period_ns:
             self._give_up("Time jumped backwards.")
             self._hold()
@@ -384,7 +385,7 @@ class JointTrajectoryController(Controller[Parameters]):
         self._last_command = wanted
 
     def _retune(self) -> None:
-        """Apply changed PID gains; the integrals are kept."""
+        """Apply changed PID gains, without resetting the integrals."""
         parameters = self.parameters
         if parameters is not self._tuned_by:
             integrals = [pid.integral for pid in self._pids]
@@ -463,6 +464,6 @@ class JointTrajectoryController(Controller[Parameters]):
 
 
 def _as_far_as_known(state: MotionState) -> MotionState:
-    """Return a state without the velocities or accelerations that the hardware does not measure."""
+    """Return a state without velocities or accelerations that the hardware does not measure."""
     known = [values if all(map(isfinite, values)) else [] for values in (state.velocities, state.accelerations)]
     return MotionState(state.positions, *known)

@@ -1,7 +1,7 @@
-"""Validation of trajectory messages, and their conversion for the joints of a controller.
+"""Validation of trajectory messages, and their conversion to trajectories of all joints of a controller.
 
-Source: joint_trajectory_controller of ros2_controllers (refusals and their messages; effects of missing joints;
-tolerances of goals).
+Source: joint_trajectory_controller of ros2_controllers (error messages, effects of missing joints, tolerances of
+goals).
 """
 
 from __future__ import annotations
@@ -21,14 +21,12 @@ _STANDING = 1.1920929e-07
 
 
 def nanoseconds(time: Any) -> int:
-    """Return a time or duration message in nanoseconds."""
+    """Convert a time or duration message to nanoseconds."""
     return int(time.sec) * NANOSECONDS_PER_SECOND + int(time.nanosec)
 
 
 def objection(message: Any, parameters: Parameters, now_ns: int) -> str | None:
-    """Return the reason for refusing a trajectory, in the words of ros2_controllers.
-
-    The result is None if it is valid.
+    """Return ros2_controllers' error message for an invalid trajectory, or None if it is valid.
 
     Args:
         message: trajectory_msgs/msg/JointTrajectory.
@@ -91,7 +89,7 @@ def trajectory_of(message: Any, parameters: Parameters, held: Sequence[float]) -
     Args:
         message: trajectory_msgs/msg/JointTrajectory, which must be valid (see `objection`).
         parameters: the parameters of the controller.
-        held: the positions of joints that the message does not name, in rad or m.
+        held: the positions of all joints, in rad or m, used for joints that the message does not name.
     """
     places = [message.joint_names.index(name) if name in message.joint_names else -1 for name in parameters.joints]
 
@@ -117,13 +115,13 @@ def trajectory_of(message: Any, parameters: Parameters, held: Sequence[float]) -
 
 
 def tolerances_of(goal: Any, joints: Sequence[str], default: Tolerances, log: Callable[[str], object]) -> Tolerances:
-    """Return the tolerances of a goal: the controller's, replaced for the joints that the goal names.
+    """Return the controller's tolerances, overridden for the joints that the goal names.
 
     Args:
         goal: control_msgs/action/FollowJointTrajectory_Goal.
         joints: the joints of the controller.
-        default: the controller's tolerances, which apply if the goal's contain a mistake.
-        log: receives error messages.
+        default: the controller's tolerances, which are returned if a tolerance of the goal is invalid.
+        log: called with each error message.
     """
     tolerances = default
     for field, given in (("path_tolerance", goal.path_tolerance), ("goal_tolerance", goal.goal_tolerance)):

@@ -1,6 +1,6 @@
 """The parameters of ``joint_trajectory_controller/JointTrajectoryController``.
 
-Source: ros2_controllers for Humble and Jazzy; parameters that only one of them has are marked.
+Source: ros2_controllers for Humble and Jazzy; parameters that only one of the two has are marked.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ _ONE_STATE = one_of(POSITION, VELOCITY, ACCELERATION)
 
 
 def _command_combination(name: str, value: tuple[str, ...]) -> Phrase | None:
-    """Validate the combination of command interfaces.
+    """Return an error message unless the command interfaces are a valid combination.
 
-    It is effort, velocity, or position [velocity [acceleration]].
+    Valid are effort, velocity, position, and position with velocity and optionally acceleration.
     """
     wrong = not_empty(name, value) or _ONE_COMMAND(name, value)
     if wrong is not None:
@@ -38,7 +38,10 @@ def _command_combination(name: str, value: tuple[str, ...]) -> Phrase | None:
 
 
 def _state_combination(name: str, value: tuple[str, ...]) -> Phrase | None:
-    """Validate the combination of state interfaces: position [velocity [acceleration]]."""
+    """Return an error message unless the state interfaces are a valid combination.
+
+    Valid is position, optionally with velocity, and with acceleration if there is velocity.
+    """
     wrong = not_empty(name, value) or _ONE_STATE(name, value)
     if wrong is not None:
         return wrong
@@ -62,7 +65,7 @@ class Gains(PidParameters):
 
 @dataclass(frozen=True, kw_only=True)
 class JointConstraints:
-    """The tolerances of a joint, in rad or m; 0 for none."""
+    """The tolerances of a joint's position, in rad or m; 0 for no limit."""
 
     trajectory: float = parameter(0.0, description="on the way, in rad or m; 0 for any")
     goal: float = parameter(0.0, description="at the end, in rad or m; 0 for any")
@@ -70,7 +73,7 @@ class JointConstraints:
 
 @dataclass(frozen=True, kw_only=True)
 class Constraints:
-    """The tolerances of all joints."""
+    """The tolerances of all joints, and the time limit of goals."""
 
     stopped_velocity_tolerance: float = parameter(0.01, description="the velocity at the end, in rad/s or m/s")
     goal_time: float = parameter(0.0, description="seconds after the end; 0 for any time", check=at_least(0.0))
@@ -115,12 +118,12 @@ class Parameters:
 
     @property
     def has_pid(self) -> bool:
-        """Whether PID controllers compute the commands from errors."""
+        """Whether commands are computed from errors by PID."""
         return self.command_interfaces == (EFFORT,) or (self.command_interfaces == (VELOCITY,) and not self.open_loop)
 
     @property
     def tolerances(self) -> Tolerances:
-        """The tolerances for trajectories that specify none."""
+        """The tolerances for trajectories that do not specify their own."""
         of_joints = [self.joint_constraints[joint] for joint in self.joints]
         stopped = self.constraints.stopped_velocity_tolerance
         return Tolerances(

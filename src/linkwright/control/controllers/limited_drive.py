@@ -1,6 +1,4 @@
-"""The base of drives that follow ``~/cmd_vel`` within limits.
-
-It provides their common topics, odometry and parameters.
+"""The base class of drives that follow ``~/cmd_vel`` within limits, with their topics, odometry and parameters.
 
 Source: diff_drive_controller of ros2_controllers, on which Husarion's mecanum controller is modelled.
 """
@@ -59,17 +57,17 @@ P = TypeVar("P", bound=LimitedDriveParameters)
 
 
 class LimitedDrive(Controller[P], Generic[P]):
-    """A drive that follows ``~/cmd_vel`` within limits, and publishes its odometry."""
+    """The base class of drives that follow ``~/cmd_vel`` within limits and publish odometry."""
 
     @abstractmethod
     def limits(self) -> Mapping[str, SpeedLimits]:
-        """Return the limits for each axis of motion, by name, such as ``linear.x``."""
+        """Return the limits of each velocity component by name, such as ``linear.x``."""
 
     def on_configure(self) -> None:
         """Create the limiters and the topics.
 
         Raises:
-            ControllerError: a limit or a list of variances is wrong.
+            ControllerError: a limit is invalid, or a list of variances has the wrong length.
         """
         parameters, node = self.parameters, self.node
         self._settings = parameters
@@ -109,7 +107,10 @@ class LimitedDrive(Controller[P], Generic[P]):
             command.value = 0.0
 
     def _speeds(self, values: list[float], period_s: float) -> list[float] | None:
-        """Return the speeds of wheels in rad/s from their states, or None if no time has passed."""
+        """Return the wheels' velocities in rad/s, from the values of their states.
+
+        Returns None if the states are positions and no time has passed.
+        """
         if not self._settings.position_feedback:
             return values
         before, self._angles = self._angles or values, values
@@ -118,7 +119,10 @@ class LimitedDrive(Controller[P], Generic[P]):
         return [(now - then) / period_s for now, then in zip(values, before, strict=True)]
 
     def _publish(self, time_ns: int, forward: float, sideways: float, angular: float) -> None:
-        """Publish the odometry and, if enabled, the limited velocity, in m/s and rad/s."""
+        """Publish the odometry and, if enabled, the limited velocity.
+
+        Velocities are in m/s and rad/s.
+        """
         self._odometry.publish(time_ns)
         if self._limited is not None and self._limited.is_wanted:
             twist = get_message("geometry_msgs/msg/Twist")(Vector3(forward, sideways, 0.0), Vector3(0.0, 0.0, angular))

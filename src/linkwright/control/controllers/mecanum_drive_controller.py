@@ -1,4 +1,4 @@
-"""``mecanum_drive_controller/MecanumDriveController``: four wheels with rollers at 45 degrees.
+"""``mecanum_drive_controller/MecanumDriveController``: a drive of four wheels with rollers at 45 degrees.
 
 Source: ros2_controllers for Jazzy (parameters, defaults, topics, the order of wheels). Two things differ: odometry
 follows arcs, and a command that is not a number stops the robot.
@@ -26,7 +26,7 @@ _DIAGONAL = (0.0, 7.0, 14.0, 21.0, 28.0, 35.0)
 
 @dataclass(frozen=True, kw_only=True)
 class BaseFrameOffset:
-    """The pose of the robot's frame relative to the centre of its wheels, in m and rad."""
+    """The pose of the robot's frame relative to the centre of the wheels, in m and rad."""
 
     x: float = 0.0
     y: float = 0.0
@@ -77,16 +77,17 @@ _CORNERS = ("front_left", "front_right", "rear_right", "rear_left")
 
 
 class MecanumDriveController(Controller[Parameters]):
-    """A mecanum drive: computes wheel velocities from commands, and odometry from the wheels.
+    """A controller of a mecanum drive.
 
-    Commands may include a sideways velocity.
+    Wheel velocities are computed from velocity commands, which may be sideways, and odometry from the states of the
+    wheels.
     """
 
     PARAMETERS = Parameters
 
     @classmethod
     def variant(cls, given: Collection[str]) -> type[Controller[Any]]:
-        """Return Husarion's controller of the same type name if its parameters are given."""
+        """Return Husarion's controller, which has the same type name, if its parameters are given."""
         return HusarionMecanumController if "front_left_wheel_name" in given else cls
 
     def command_interfaces(self) -> InterfaceNames:
@@ -156,7 +157,7 @@ class MecanumDriveController(Controller[Parameters]):
             command.value = 0.0
 
     def update_references(self, time_ns: int, period_s: float) -> None:
-        """Copy the command into the references, if there is one."""
+        """Copy the velocity command into the references, or NaN if there is no valid command."""
         velocity = self._input.velocity(time_ns) or (nan, nan, nan)
         for reference, value in zip(self.references, velocity, strict=True):
             reference.value = value
@@ -185,7 +186,7 @@ class MecanumDriveController(Controller[Parameters]):
             command.value = value
 
     def _of_base(self, forward: float, sideways: float, angular: float) -> tuple[float, float, float]:
-        """Return the velocity of the robot's frame, given the velocity of the centre of its wheels."""
+        """Return the velocity of the robot's frame, given the velocity of the centre of the wheels."""
         offset = self._settings.kinematics.base_frame_offset
         along, across = _turned(forward - offset.y * angular, sideways + offset.x * angular, -offset.theta)
         return along, across, angular

@@ -1,4 +1,4 @@
-"""The node of a controller, for use in the update thread."""
+"""The node of a controller, which is used in the update thread."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from linkwright.graph.stepped.node import SteppedNode
 
 
 class ControllerNode(SteppedNode):
-    """A controller's publishers, subscriptions and services, and calls between its two threads.
+    """A controller's publishers, subscriptions and services, for use in the update thread.
 
     Callbacks run in the update thread, between two updates; messages are sent after the update.
 
@@ -27,14 +27,14 @@ class ControllerNode(SteppedNode):
         self._exchange.send(_Call(call), None)
 
     def clear(self) -> None:
-        """Remove the node's topics and services from the graph; the node stays."""
+        """Remove the node's topics and services from the graph, but keep the node."""
         for endpoint in self._endpoints:
             endpoint.destroy()
         self._endpoints.clear()
 
 
 class _Call:
-    """A function that takes the place of a publisher."""
+    """A function call in the form of a publisher, so that it is queued among messages."""
 
     __slots__ = ("_call",)
 

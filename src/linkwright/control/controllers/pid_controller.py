@@ -1,4 +1,4 @@
-"""``pid_controller/PidController``: commands degrees of freedom by PID from their errors.
+"""``pid_controller/PidController``, which commands degrees of freedom by PID from their errors.
 
 Source: ros2_controllers (parameters, topics, service, interfaces for chaining, feed-forward).
 """
@@ -25,7 +25,7 @@ _LATEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 def _one_or_two(name: str, value: tuple[str, ...]) -> Phrase | None:
-    """Validate a list of interfaces: one interface, or one and its derivative."""
+    """Return an error message unless a list contains one interface, or one and its derivative."""
     if not 1 <= len(value) <= 2:
         return phrase("Parameter '{name}' must be one interface, or an interface and its derivative", name=name)
     return None
@@ -33,7 +33,7 @@ def _one_or_two(name: str, value: tuple[str, ...]) -> Phrase | None:
 
 @dataclass(frozen=True, kw_only=True)
 class Gains(PidParameters):
-    """The gains of a degree of freedom."""
+    """The PID gains of a degree of freedom."""
 
     feedforward_gain: float = parameter(0.0, description="how much of the reference is added to the command")
     angle_wraparound: bool = parameter(False, description="whether it turns without an end")
@@ -64,19 +64,19 @@ class PidController(Controller[Parameters]):
     PARAMETERS = Parameters
 
     def command_interfaces(self) -> InterfaceNames:
-        """Return one interface for each degree of freedom."""
+        """Return one command interface for each degree of freedom."""
         return [f"{dof_name}/{self.parameters.command_interface}" for dof_name in self.parameters.dof_names]
 
     def state_interfaces(self) -> InterfaceNames:
-        """Return the interfaces of the first kind, then those of the second kind."""
+        """Return the state interfaces, ordered by kind; none if states are received on a topic."""
         return () if self.parameters.use_external_measured_states else self._measured_names()
 
     def reference_interfaces(self) -> Sequence[str]:
-        """Return the references, in the order of the states."""
+        """Return the names of the references, in the order of the states."""
         return self._measured_names()
 
     def exported_states(self) -> Sequence[str]:
-        """Return the exported states, in the order of the states."""
+        """Return the names of the exported states, in the order of the states."""
         return self._measured_names()
 
     def _measured_names(self) -> list[str]:
@@ -84,7 +84,11 @@ class PidController(Controller[Parameters]):
         return [f"{name}/{kind}" for kind in parameters.reference_and_state_interfaces for name in parameters.measured]
 
     def on_configure(self) -> None:
-        """Create the topics and the service."""
+        """Create the topics and the service.
+
+        Raises:
+            ControllerError: the two lists of degrees of freedom differ in length.
+        """
         parameters = self.parameters
         if len(parameters.measured) != len(parameters.dof_names):
             raise ControllerError(
@@ -113,7 +117,7 @@ class PidController(Controller[Parameters]):
                 pid.reset()
 
     def on_deactivate(self) -> None:
-        """Command 0, except for positions."""
+        """Command 0, unless positions are commanded."""
         if self.parameters.command_interface != POSITION:
             for command in self.commands:
                 command.value = 0.0
@@ -174,9 +178,9 @@ class PidController(Controller[Parameters]):
             self._measured = values
 
     def _in_order(self, message: Any) -> list[float]:
-        """Return the values and rates of a message in the order of the degrees of freedom.
+        """Return a message's values, and rates if used, in the order of the controller.
 
-        The result is empty for an invalid message.
+        Returns an empty list, and logs an error, if the message is invalid.
         """
         known = list(self.parameters.measured)
         names, values, rates = list(message.dof_names) or known, list(message.values), list(message.values_dot)

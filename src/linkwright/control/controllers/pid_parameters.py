@@ -13,7 +13,7 @@ from linkwright.nodes.parameter_tables import one_of, parameter
 class PidParameters:
     """The parameters of a PID controller.
 
-    Without `i_clamp`, the bounds `i_clamp_min` and `i_clamp_max` apply.
+    If `i_clamp` is not set, `i_clamp_min` and `i_clamp_max` bound the integral term.
     """
 
     p: float = 0.0

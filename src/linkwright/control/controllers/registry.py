@@ -1,6 +1,6 @@
-"""The registry of controllers by type name: the entry points ``linkwright.controllers``.
+"""The registry of controller classes by type name, from the entry points ``linkwright.controllers``.
 
-``diff_drive_controller/DiffDriveController``, for example, names a subclass of `Controller`.
+The type name ``diff_drive_controller/DiffDriveController``, for example, belongs to a subclass of `Controller`.
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ _LEFT_OUT = {
 
 
 def controller_types() -> list[str]:
-    """Return the type names of all controllers."""
+    """Return the type names of all installed controllers."""
     return list(extensions(GROUP))
 
 
 def controller_class(type_name: str) -> type[Controller[Any]]:
-    """Return the class of a controller.
+    """Return the controller class with a type name.
 
     Raises:
         LinkwrightError: CTL103, no controller has this type name; CTL104, the package that provides it cannot be

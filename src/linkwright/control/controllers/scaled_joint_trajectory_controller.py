@@ -1,4 +1,4 @@
-"""``ur_controllers/ScaledJointTrajectoryController``: follows the robot's speed slider.
+"""``ur_controllers/ScaledJointTrajectoryController``, which follows trajectories at the robot's speed scaling.
 
 Source: ur_controllers of the driver for Universal Robots (the parameter; the factor scales the time of a trajectory).
 """
@@ -31,9 +31,9 @@ class ScaledParameters(Parameters):
 
 
 class ScaledJointTrajectoryController(JointTrajectoryController):
-    """Follows trajectories in a time that is scaled by a factor from the hardware.
+    """A controller that follows trajectories in time scaled by a factor from the hardware.
 
-    On Universal Robots the factor is the robot's speed slider.
+    On Universal Robots, the factor is set by the robot's speed slider.
     """
 
     PARAMETERS = ScaledParameters
@@ -45,7 +45,7 @@ class ScaledJointTrajectoryController(JointTrajectoryController):
         return parameters.speed_scaling_interface_name
 
     def state_interfaces(self) -> InterfaceNames:
-        """Return the state interfaces of the joints, then the scaling factor."""
+        """Return the state interfaces of the joints, followed by the scaling factor if it is named."""
         names, factor = super().state_interfaces(), self._factor_name
         assert not isinstance(names, Interfaces), "the joints are named"
         return [*names, factor] if factor else names
@@ -59,7 +59,7 @@ class ScaledJointTrajectoryController(JointTrajectoryController):
         super().on_activate()
 
     def update(self, time_ns: int, period_s: float) -> None:
-        """Command the point that is due at the scaled time, which starts with the trajectory."""
+        """Command the trajectory at the scaled time, which is reset by each new trajectory."""
         if self._factor is not None and isfinite(self._factor.value):
             self._behind_ns += round((1.0 - max(self._factor.value, 0.0)) * period_s * NANOSECONDS_PER_SECOND)
         super().update(time_ns - self._behind_ns, period_s)

@@ -1,4 +1,4 @@
-"""Broadcasters of hardware sensors: IMUs, force-torque sensors, range sensors and poses.
+"""Broadcasters of IMUs, force-torque sensors, range sensors and poses.
 
 Source: ``imu_sensor_broadcaster``, ``force_torque_sensor_broadcaster``, ``range_sensor_broadcaster`` and
 ``pose_broadcaster`` of ros2_controllers (parameters, names of interfaces, topics).
@@ -22,7 +22,7 @@ _UNKNOWN = (0.0,) * 9
 
 
 def _check_covariance(name: str, value: tuple[float, ...]) -> Phrase | None:
-    """Validate a covariance: 9 numbers, row by row."""
+    """Return an error message unless a covariance consists of 9 numbers, row by row."""
     if len(value) != 9:
         return phrase("Parameter '{name}' has {count} numbers and must have 9", name=name, count=len(value))
     return None
@@ -41,7 +41,7 @@ class ImuParameters:
 
 @dataclass(frozen=True, kw_only=True)
 class Vector:
-    """The names of three interfaces."""
+    """The names of the three interfaces of a vector."""
 
     x: str = ""
     y: str = ""
@@ -73,7 +73,7 @@ class PoseNames:
 
 @dataclass(frozen=True, kw_only=True)
 class AxisOffsets:
-    """An offset for each of three axes, 0 by default."""
+    """The offsets of three axes, 0 by default."""
 
     x: float = 0.0
     y: float = 0.0
@@ -82,7 +82,7 @@ class AxisOffsets:
 
 @dataclass(frozen=True, kw_only=True)
 class Ones:
-    """A factor for each of three axes, 1 by default."""
+    """The factors of three axes, 1 by default."""
 
     x: float = 1.0
     y: float = 1.0
@@ -99,7 +99,7 @@ class Offset:
 
 @dataclass(frozen=True, kw_only=True)
 class Multiplier:
-    """The factors of a wrench."""
+    """The factors by which a wrench is multiplied."""
 
     force: Ones = Ones()
     torque: Ones = Ones()
@@ -109,7 +109,7 @@ class Multiplier:
 class WrenchParameters:
     """Parameters of the force-torque broadcaster.
 
-    `offset` is added before `multiplier` is applied.
+    `offset` is added to the wrench before it is multiplied by `multiplier`.
     """
 
     frame_id: str = parameter("", check=not_empty)
@@ -155,7 +155,7 @@ P = TypeVar("P")
 
 
 class SensorBroadcaster(Controller[P]):
-    """Publishes a message with its states at each update, while a subscription exists."""
+    """The base class of broadcasters, which publish a message with their states at each update."""
 
     TYPE: ClassVar[str]
     TOPIC: ClassVar[str]
@@ -166,26 +166,32 @@ class SensorBroadcaster(Controller[P]):
 
     @abstractmethod
     def message(self, kind: Any, header: Header, values: Sequence[float]) -> Any:
-        """Return a message with the interfaces' values, which are in the order of `state_interfaces`."""
+        """Return a message that contains the values of the state interfaces.
+
+        Args:
+            kind: the message class.
+            header: the header of the message.
+            values: the values, in the order of `state_interfaces`.
+        """
 
     def on_configure(self) -> None:
-        """Create the topic."""
+        """Create the publisher."""
         self._kind = get_message(self.TYPE)
         self._output = self.node.publisher(self.TYPE, self.TOPIC)
 
     def update(self, time_ns: int, period_s: float) -> None:
-        """Publish a message if a subscription exists."""
+        """Publish a message if the topic has a subscription."""
         if self._output.is_wanted:
             self._output.publish(self.message(self._kind, self.header(time_ns), [state.value for state in self.states]))
 
     def header(self, time_ns: int) -> Header:
-        """Return a header with the time, and with the frame from the parameters."""
+        """Return a header with the given time and the frame from the parameters."""
         frame: str = self.parameters.frame_id  # type: ignore[attr-defined]  # all of them have one
         return Header(stamp=Time(*divmod(time_ns, NANOSECONDS_PER_SECOND)), frame_id=frame)
 
 
 def _six(wrench: WrenchNames | Offset | Multiplier) -> list[Any]:
-    """Return the values for forces and torques, axis by axis."""
+    """Return the six values of forces and torques: force x, y, z, torque x, y, z."""
     return [getattr(vector, axis) for vector in (wrench.force, wrench.torque) for axis in "xyz"]
 
 
@@ -226,7 +232,11 @@ class ForceTorqueBroadcaster(SensorBroadcaster[WrenchParameters]):
     TYPE, TOPIC = "geometry_msgs/msg/WrenchStamped", "~/wrench"
 
     def on_configure(self) -> None:
-        """Determine which interfaces exist; axes without an interface are 0."""
+        """Determine the interface of each axis, and create the publisher.
+
+        Raises:
+            ControllerError: neither or both of ``sensor_name`` and ``interface_names`` are set.
+        """
         parameters = self.parameters
         named = _six(parameters.interface_names)
         if not parameters.sensor_name and not any(named):
@@ -247,7 +257,7 @@ class ForceTorqueBroadcaster(SensorBroadcaster[WrenchParameters]):
         return [name for name in self._names if name]
 
     def message(self, kind: Any, header: Header, values: Sequence[float]) -> Any:
-        """Return a wrench message."""
+        """Return a wrench message with 0 for axes without an interface, after offsets and factors."""
         there = iter(values)
         parameters = self.parameters
         six = [
@@ -284,13 +294,17 @@ class RangeBroadcaster(SensorBroadcaster[RangeParameters]):
 
 
 class PoseBroadcaster(SensorBroadcaster[PoseParameters]):
-    """``pose_broadcaster/PoseBroadcaster``: publishes a pose, and its transform."""
+    """``pose_broadcaster/PoseBroadcaster``, which publishes a pose and its transform."""
 
     PARAMETERS = PoseParameters
     TYPE, TOPIC = "geometry_msgs/msg/PoseStamped", "~/pose"
 
     def on_configure(self) -> None:
-        """Determine which interfaces exist."""
+        """Determine the interfaces of the pose, and create the publishers.
+
+        Raises:
+            ControllerError: neither or both of ``pose_name`` and ``interface_names`` are set.
+        """
         parameters = self.parameters
         place, turn = parameters.interface_names.position, parameters.interface_names.orientation
         named = [place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w]
@@ -322,11 +336,11 @@ class PoseBroadcaster(SensorBroadcaster[PoseParameters]):
         return kind(header=header, pose=pose(position=point(*values[:3]), orientation=Quaternion(*values[3:])))
 
     def update(self, time_ns: int, period_s: float) -> None:
-        """Publish the pose, and the transform if it is due and known."""
+        """Publish the pose, and the transform if its period has passed and all values are finite."""
         super().update(time_ns, period_s)
         rate = self.parameters.tf.publish_rate
         period_ns = round(NANOSECONDS_PER_SECOND / rate) if rate else 0
-        waits = 0 < self._next_transform_ns - time_ns <= period_ns  # longer after simulated time was reset
+        waits = 0 < self._next_transform_ns - time_ns <= period_ns  # Longer if simulated time was reset.
         if self._transforms is None or not self._child or waits:
             return
         values = [state.value for state in self.states]

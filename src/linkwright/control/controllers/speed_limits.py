@@ -18,7 +18,10 @@ from linkwright.nodes.parameter_tables import HUMBLE, JAZZY, parameter
 
 @dataclass(frozen=True, kw_only=True)
 class SpeedLimits:
-    """The limits of one axis, in m/s or rad/s, and of its first and second derivatives."""
+    """The limits of one velocity component, and of its first and second derivatives.
+
+    The component is in m/s or rad/s.
+    """
 
     has_velocity_limits: bool | None = parameter(None, only=HUMBLE)
     has_acceleration_limits: bool | None = parameter(None, only=HUMBLE)
@@ -74,7 +77,7 @@ NO_LIMITS = SpeedLimits()
 
 
 def _given(*values: float) -> float:
-    """Return the first value that was given."""
+    """Return the first value that is not NaN."""
     return next(value for value in values if not isnan(value))
 
 

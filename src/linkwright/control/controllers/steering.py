@@ -1,4 +1,4 @@
-"""The base of controllers of steered vehicles, which have a driven axle and a steered axle.
+"""The base class of controllers of steered vehicles, which have a driven axle and a steered axle.
 
 Source: steering_controllers_library of ros2_controllers, for Humble and Jazzy (parameters with their older names,
 defaults, topics, the order of joints: right, left). Three things differ: odometry and wheels use the tangent of the
@@ -64,32 +64,32 @@ class SteeringParameters:
     wheelbase: float = parameter(0.0, description="between the axles, in m")
 
     def of_traction(self, front: float, rear: float) -> float:
-        """Return the driven axle's value, given the values for front and rear in older files."""
+        """Return the driven axle's value, given the older parameters for front and rear."""
         return rear if self.front_steering else front
 
     @property
     def traction(self) -> tuple[str, ...]:
-        """The driven joints."""
+        """The names of the driven joints."""
         return self.traction_joints_names or (
             self.rear_wheels_names if self.front_steering else self.front_wheels_names
         )
 
     @property
     def steering(self) -> tuple[str, ...]:
-        """The steered joints."""
+        """The names of the steered joints."""
         return self.steering_joints_names or (
             self.front_wheels_names if self.front_steering else self.rear_wheels_names
         )
 
     @property
     def traction_states(self) -> tuple[str, ...]:
-        """The names of the driven joints' states."""
+        """The components whose states are those of the driven joints."""
         older = self.rear_wheels_state_names if self.front_steering else self.front_wheels_state_names
         return self.traction_joints_state_names or older or self.traction
 
     @property
     def steering_states(self) -> tuple[str, ...]:
-        """The names of the steered joints' states."""
+        """The components whose states are those of the steered joints."""
         older = self.front_wheels_state_names if self.front_steering else self.rear_wheels_state_names
         return self.steering_joints_state_names or older or self.steering
 
@@ -98,9 +98,10 @@ P = TypeVar("P", bound=SteeringParameters)
 
 
 class SteeringController(Controller[P], Generic[P]):
-    """A steered vehicle, whose wheel velocities and steering angles follow velocity commands.
+    """The base class of controllers of steered vehicles.
 
-    The controller also publishes odometry.
+    Wheel velocities and steering angles are computed from velocity commands, and odometry from the states of the
+    joints.
 
     Attributes:
         KIND: the vehicle's name in error messages.
@@ -112,19 +113,19 @@ class SteeringController(Controller[P], Generic[P]):
 
     @abstractmethod
     def drive(self) -> CarDrive:
-        """Return the drive with the dimensions of the vehicle, which are checked to be positive."""
+        """Return the drive with the dimensions of the vehicle, which need not be valid."""
 
     def command_interfaces(self) -> InterfaceNames:
-        """Return the velocity interfaces of the driven joints, then positions of the steered joints."""
+        """Return the velocities of the driven joints, then the positions of the steered joints."""
         parameters = self.parameters
         return [f"{name}/{VELOCITY}" for name in parameters.traction] + [
             f"{name}/{POSITION}" for name in parameters.steering
         ]
 
     def state_interfaces(self) -> InterfaceNames:
-        """Return the measured interfaces of the driven joints, then positions of the steered joints.
+        """Return the interfaces of the driven joints, then the positions of the steered joints.
 
-        The driven joints have velocities, or positions if the parameters request them.
+        The interfaces of driven joints are velocities, or positions if ``position_feedback`` is set.
         """
         parameters = self.parameters
         kind = POSITION if parameters.position_feedback else VELOCITY
@@ -140,7 +141,7 @@ class SteeringController(Controller[P], Generic[P]):
         """Check the parameters, and create the topics.
 
         Raises:
-            ControllerError: joints or dimensions are missing.
+            ControllerError: the number of joints is wrong, or a dimension is not positive.
         """
         parameters, node = self.parameters, self.node
         self._settings = parameters
@@ -196,19 +197,19 @@ class SteeringController(Controller[P], Generic[P]):
         self._input.open()
 
     def on_deactivate(self) -> None:
-        """Stop the wheels; the steering angle is kept."""
+        """Stop the wheels, and keep the steering angle."""
         self._input.close()
         for command in self.commands[: self.JOINTS[0]]:
             command.value = 0.0
 
     def update_references(self, time_ns: int, period_s: float) -> None:
-        """Copy the command into the references, if there is one."""
+        """Copy the velocity command into the references, or NaN if there is no valid command."""
         velocity = self._input.velocity(time_ns) or (nan, nan, nan)
         forward, angular = self.references
         forward.value, angular.value = velocity[0], velocity[2]
 
     def update(self, time_ns: int, period_s: float) -> None:
-        """Command wheels and steering, and publish the odometry."""
+        """Command the wheels and the steering, and publish the odometry."""
         forward, angular = (reference.value for reference in self.references)
         finite = isfinite(forward) and isfinite(angular)
         if self._settings.open_loop:
@@ -227,7 +228,7 @@ class SteeringController(Controller[P], Generic[P]):
             reference.value = nan
 
     def _measure(self, period_s: float) -> None:
-        """Update the odometry from wheels and steering; values that are not finite are ignored."""
+        """Update the odometry from wheels and steering, unless a value is not finite."""
         driving, steering = self.JOINTS
         values = [state.value for state in self.states]
         if not all(map(isfinite, values)) or period_s <= 0.0:
@@ -241,7 +242,10 @@ class SteeringController(Controller[P], Generic[P]):
         self._odometry.odometer.measure((forward, 0.0, angular), period_s)
 
     def _move(self, forward: float, angular: float) -> None:
-        """Command the wheels, whose velocities follow the measured steering angle, not the commanded one."""
+        """Command the steering, and wheel velocities that match the measured steering angle.
+
+        In open loop, wheel velocities match the commanded angle.
+        """
         parameters, (driving, steering) = self._settings, self.JOINTS
         angle = self._drive.steering_angle(forward, angular)
         steered = angle if parameters.open_loop else self._steered

@@ -1,4 +1,4 @@
-"""``tricycle_controller/TricycleController``: one front wheel that is driven and steered.
+"""``tricycle_controller/TricycleController``: a vehicle whose front wheel is driven and steered.
 
 Source: ros2_controllers for Humble and Jazzy (parameters, defaults, topics; the wheel is slow while it is far from its
 angle). One thing differs: open-loop odometry is computed from the limited commands of the wheel.
@@ -29,7 +29,7 @@ _CREEPING = 0.01
 
 @dataclass(frozen=True, kw_only=True)
 class TractionLimits:
-    """The limits of the wheel's velocity, in rad/s, and its derivatives, in both directions."""
+    """The limits of the wheel's velocity, in rad/s, and of its derivatives, in both directions."""
 
     max_velocity: float = nan
     min_velocity: float = nan
@@ -43,9 +43,9 @@ class TractionLimits:
 
 @dataclass(frozen=True, kw_only=True)
 class SteeringLimits:
-    """The limits of the wheel's angle, in rad, and of its derivatives.
+    """The limits of the steering angle, in rad, and of its derivatives.
 
-    The latter apply in both directions.
+    The limits of the derivatives apply in both directions.
     """
 
     max_position: float = nan
@@ -83,9 +83,9 @@ class Parameters:
 
 
 class TricycleController(Controller[Parameters]):
-    """A tricycle drive, whose wheel velocity and angle follow velocity commands.
+    """A controller of a tricycle with a driven and steered front wheel.
 
-    The controller also publishes odometry.
+    The velocity and angle of the wheel are computed from velocity commands. The controller also publishes odometry.
     """
 
     PARAMETERS = Parameters
@@ -100,7 +100,7 @@ class TricycleController(Controller[Parameters]):
         return self.command_interfaces()
 
     def on_configure(self) -> None:
-        """Check the parameters, and create the topics.
+        """Check the parameters, and create the topics and the service.
 
         Raises:
             ControllerError: joints or dimensions are missing, or limits are invalid.
@@ -182,7 +182,7 @@ class TricycleController(Controller[Parameters]):
 
 
 def _speed_fraction(error: float) -> float:
-    """Return the fraction of its speed at which the wheel is driven, for a steering error in rad."""
+    """Return the fraction of the speed at which to drive at a steering error in rad."""
     if error < _NEAR:
         return 1.0
     return _CREEPING if error > _FAR else cos(error)
@@ -213,7 +213,11 @@ def _steering_limiter(limits: SteeringLimits) -> SteeringLimiter:
 
 
 def _magnitudes(part: str, kind: str, least: float, greatest: float) -> Bounds:
-    """Return the bounds of a magnitude, either of which may be missing."""
+    """Return the bounds of a magnitude, with defaults for bounds that are NaN.
+
+    Raises:
+        ControllerError: a bound is negative, or the minimum is above the maximum.
+    """
     if least < 0.0 or greatest < 0.0:
         raise ControllerError(
             phrase(

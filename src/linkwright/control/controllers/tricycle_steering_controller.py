@@ -1,4 +1,4 @@
-"""``tricycle_steering_controller/TricycleSteeringController``: two driven wheels, one steered."""
+"""``tricycle_steering_controller/TricycleSteeringController``: two driven wheels and one steered wheel."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.nodes.parameter_tables import HUMBLE, JAZZY, parameter
 
 @dataclass(frozen=True, kw_only=True)
 class Parameters(SteeringParameters):
-    """The parameters of the controller: those of all steered vehicles, and its dimensions."""
+    """The parameters shared by all steered vehicles, and the dimensions of this vehicle."""
 
     traction_wheels_radius: float = parameter(0.0, description="of the wheels that drive, in m", only=JAZZY)
     traction_track_width: float = parameter(0.0, description="between the wheels that drive, in m", only=JAZZY)
@@ -21,17 +21,14 @@ class Parameters(SteeringParameters):
 
 
 class TricycleSteeringController(SteeringController[Parameters]):
-    """A tricycle whose single wheel is steered and not driven."""
+    """A controller of a tricycle whose single wheel is steered and not driven."""
 
     PARAMETERS = Parameters
     KIND = "Tricycle"
     JOINTS = (2, 1)
 
     def drive(self) -> CarDrive:
-        """Return the drive with the dimensions from the parameters.
-
-        The parameters have their current or their older names.
-        """
+        """Return the drive with the dimensions in the parameters, under current or older names."""
         parameters = self.parameters
         radius = parameters.traction_wheels_radius or parameters.of_traction(
             parameters.front_wheels_radius, parameters.rear_wheels_radius

@@ -18,20 +18,20 @@ REFERENCE_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 class VelocityInput:
     """The velocity commands of a ``geometry_msgs/msg/TwistStamped`` topic, which expire.
 
-    The age of a command counts from the time in its header. If the header has no time, or one in the future, it counts
-    from the update that first uses the command, so every command expires. A command that is not finite stops the drive.
+    The age of a command counts from the time in its header. If that time is zero or in the future, the age counts from
+    the update that first uses the command, so every command expires. A command that is not finite stops the drive.
 
     Args:
         node: the controller's node.
         topic: the topic's name.
-        timeout_s: how long a command holds, in seconds; with 0 each holds for one update.
+        timeout_s: how long a command stays valid, in seconds; 0 to use each command for one update.
         unstamped: an additional topic of type ``geometry_msgs/msg/Twist``; empty for none. If it has the same name as
             `topic`, only commands without headers are received.
         qos: the QoS of the subscriptions.
 
-    Source: diff_drive_controller of ros2_controllers, with two differences: a header with a time in the future does not
-    hold forever, and commands with headers are accepted even if commands without headers are requested, since Jazzy
-    accepts no others.
+    Source: diff_drive_controller of ros2_controllers, with two differences: a command with a time in the future does
+    expire, and commands with headers are accepted even if commands without headers are requested, since Jazzy accepts
+    no others.
     """
 
     def __init__(
@@ -63,16 +63,13 @@ class VelocityInput:
         self._command: tuple[Velocity, int] | None = None
 
     def _lose(self) -> bool:
-        """Discard the command of a lost publisher; return whether it was still valid, and not zero."""
+        """Discard the command of a lost publisher, and return whether the command was not zero."""
         velocity, _ = self._come or self._command or ((0.0,), 0)
         self.forget()
         return any(velocity)
 
     def velocity(self, time_ns: int) -> Velocity | None:
-        """Return the command that is valid at a time, in nanoseconds.
-
-        The result is None if there is none, or it has expired.
-        """
+        """Return the command that is valid at a time in nanoseconds, or None if there is none."""
         if self._come is not None:
             self._receive(*self._come, time_ns)
             self._come = None

@@ -1,1 +1,1 @@
-"""Hardware as controllers see it: interfaces, and ``<ros2_control>`` elements."""
+"""Hardware with its interfaces, and its description in ``<ros2_control>`` elements."""

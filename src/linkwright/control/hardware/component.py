@@ -1,7 +1,6 @@
-"""The base class of hardware, and the lookup of hardware classes by type name.
+"""The base class of hardware components, and the lookup of hardware classes by type name.
 
-Hardware is found through the entry points ``linkwright.hardware`` by its type name, such as
-``mock_components/GenericSystem``.
+A type name such as ``mock_components/GenericSystem`` is an entry point of the group ``linkwright.hardware``.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ GROUP = "linkwright.hardware"
 
 
 class HardwareError(LinkwrightError):
-    """Raised when hardware refuses a request or fails; its text is logged.
+    """Raised when hardware refuses a request or fails; the message is logged.
 
     Args:
         message: what is wrong.
@@ -32,14 +31,15 @@ class HardwareError(LinkwrightError):
 
 
 class Hardware:
-    """A hardware component.
+    """The base class of hardware components.
 
     Args:
         description: the component's description in the URDF.
         logger: the logger of its events.
 
     Attributes:
-        description, logger: see above.
+        description: the component's description in the URDF.
+        logger: the logger of its events.
         states, commands: the component's interfaces; a state starts with its initial value, or NaN.
         state: the lifecycle state.
         timings: the timers of reading and writing; None while no statistics are requested.
@@ -58,7 +58,7 @@ class Hardware:
 
     def _state_interface(self, component: ComponentDescription, interface: InterfaceDescription) -> StateInterface:
         value = interface.initial_value
-        if value != value:  # NaN; the older form of initial_value
+        if value != value:  # NaN: use the older form of initial_value.
             text = component.parameters.get(f"initial_{interface.name}", "")
             value = float(text) if text.replace(".", "", 1).lstrip("-").isdigit() else nan
         return StateInterface(component.name, interface.name, value)
@@ -74,7 +74,7 @@ class Hardware:
         """Power on the hardware.
 
         Raises:
-            HardwareError: the hardware refuses.
+            HardwareError: the hardware cannot be activated.
         """
 
     def on_deactivate(self) -> None:
@@ -84,10 +84,10 @@ class Hardware:
         """Disconnect from the hardware."""
 
     def on_error(self) -> None:
-        """Handle an error in reading or writing."""
+        """Handle an error that `read` or `write` raised."""
 
     def prepare_switch(self, start: Collection[str], stop: Collection[str]) -> None:
-        """Check whether a switch to other command interfaces is possible.
+        """Check whether controllers may switch to other command interfaces.
 
         Args:
             start: names of the command interfaces that controllers will claim, including those of other hardware.
@@ -116,7 +116,7 @@ class Hardware:
 
 
 def hardware_class(plugin: str) -> type[Hardware] | None:
-    """Return the hardware class of a type; None if there is none.
+    """Return the hardware class with a type name, or None if there is none.
 
     Raises:
         LinkwrightError: CTL121, the package that provides it cannot be imported.

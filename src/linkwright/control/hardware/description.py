@@ -1,4 +1,4 @@
-"""The ``<ros2_control>`` elements of a description, as data.
+"""The data of a description's ``<ros2_control>`` elements.
 
 Source: hardware_interface's component parser (elements, types, defaults). A joint mimics another through the joint's
 ``<mimic>`` (Jazzy), or through its parameters ``mimic``, ``multiplier`` and ``offset`` (Humble); ``mimic="false"``
@@ -25,11 +25,11 @@ class InterfaceDescription:
     """An interface of a component.
 
     Attributes:
-        name: ``position``, ...
+        name: the kind of interface, such as ``position``.
         minimum, maximum: the bounds of commands; NaN if not given.
         initial_value: the initial value of a state; NaN if not given.
-        limited: whether its commands are kept within limits, if the manager enforces limits.
-        parameters: all of its parameters as written.
+        limited: whether commands are limited if the manager enforces limits.
+        parameters: all parameters as written.
     """
 
     name: str
@@ -42,7 +42,7 @@ class InterfaceDescription:
 
 @dataclass(frozen=True, slots=True)
 class MimicDescription:
-    """A mimic relation: position = multiplier * position of `joint` + offset."""
+    """A mimic relation: position = `multiplier` * position of `joint` + `offset`."""
 
     joint: str
     multiplier: float = 1.0
@@ -58,7 +58,7 @@ class ComponentDescription:
         kind: ``joint``, ``sensor`` or ``gpio``.
         commands, states: the component's interfaces.
         parameters: the parameters as written.
-        mimic: the joint that it follows.
+        mimic: the relation to the joint that the component mimics; None if it mimics none.
     """
 
     name: str
@@ -76,8 +76,8 @@ class HardwareDescription:
     Attributes:
         name: the hardware's name.
         type: ``system``, ``actuator`` or ``sensor``.
-        plugin: the type name of its driver.
-        is_async: whether it requests its own thread.
+        plugin: the type name of the hardware class.
+        is_async: whether the hardware requests its own thread.
         parameters: the parameters of the hardware.
         joints, sensors, gpios: the components, in file order.
     """
@@ -102,7 +102,7 @@ class HardwareDescription:
 
 
 def hardware_of(robot: Robot) -> tuple[list[HardwareDescription], list[Diagnostic]]:
-    """Return the hardware of a robot, and findings about its elements.
+    """Return the hardware of a robot, and findings about its ``<ros2_control>`` elements.
 
     Invalid elements are left out: hardware without a name or with an unknown type, a joint that the robot does not
     have, a value that is not a number.

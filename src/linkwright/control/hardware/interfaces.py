@@ -1,4 +1,4 @@
-"""Interfaces of ros2_control: named numbers that hardware and controllers exchange.
+"""Interfaces of ros2_control, which are named numbers that hardware and controllers exchange.
 
 Source: hardware_interface of ros2_control (names, units of REP 103, NaN for unknown values).
 """
@@ -13,15 +13,15 @@ POSITION, VELOCITY, ACCELERATION, EFFORT = "position", "velocity", "acceleration
 
 
 class Interface:
-    """A named number.
+    """A named number that hardware and controllers exchange.
 
     Args:
         component: the joint, sensor or GPIO; for interfaces of a chained controller, the controller.
-        kind: ``position``, ``velocity``, ``orientation.x``, ...
+        kind: the kind of value, such as ``position`` or ``orientation.x``.
         value: the initial number; NaN while it is unknown.
 
     Attributes:
-        component, kind: see above.
+        component, kind: the component and the kind of value.
         name: component and kind, such as ``joint1/position``.
         value: the current number.
     """
@@ -39,7 +39,7 @@ class Interface:
 
 
 class StateInterface(Interface):
-    """A state of hardware; any number of controllers may read it."""
+    """A state of hardware, which any number of controllers may read."""
 
     __slots__ = ()
 
@@ -54,7 +54,7 @@ class CommandInterface(Interface):
 
 
 class Interfaces(Enum):
-    """Constants that represent all interfaces, or none."""
+    """Constants for a controller that uses all interfaces, or none."""
 
     ALL = "all"
     """Every interface that there is."""

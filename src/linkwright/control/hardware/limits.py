@@ -1,4 +1,4 @@
-"""Limits of joints, applied to all commands.
+"""Limits of joints, which are applied to commands.
 
 Source: joint_limits of ros2_control (``enforce_command_limits`` of the controller manager; which limits apply where).
 The limits are those of the joint's ``<limit>`` and ``<safety_controller>``, narrowed by ``min`` and ``max`` of its
@@ -36,9 +36,9 @@ class JointLimits:
     Attributes:
         position: the minimum and the maximum.
         velocity, effort: the maximum in either direction.
-        acceleration, deceleration: the maximum for velocity and acceleration commands.
-        safety: soft limits, within the other limits.
-        kinds: the interfaces whose commands are limited.
+        acceleration, deceleration: the maxima for velocity and acceleration commands.
+        safety: soft limits, within the other limits; None if there are none.
+        kinds: the kinds of interfaces whose commands are limited.
     """
 
     position: tuple[float, float] = _UNLIMITED
@@ -51,7 +51,7 @@ class JointLimits:
 
 
 def limits_of(joint: Joint, described: ComponentDescription) -> JointLimits:
-    """Return the limits of a joint of the hardware."""
+    """Return the limits of a joint, from its URDF element and its description as hardware."""
     limit, interfaces = joint.limit, {command.name: command for command in described.commands}
     position, velocity, effort, acceleration, deceleration = _UNLIMITED, inf, inf, inf, inf
     if limit is not None:
@@ -74,7 +74,7 @@ def limits_of(joint: Joint, described: ComponentDescription) -> JointLimits:
 
 
 class JointLimiter:
-    """Limits the commands of a joint.
+    """A limiter of the commands of a joint.
 
     Args:
         name: the joint's name.
@@ -131,10 +131,7 @@ class JointLimiter:
         return None if state is None or not isfinite(state.value) else state.value
 
     def _speeds(self, position: float | None) -> tuple[float, float]:
-        """Return the maximum velocities in both directions at a position.
-
-        They decrease towards soft limits.
-        """
+        """Return the velocity limits in both directions, which decrease towards soft limits."""
         greatest, safety = self._limits.velocity, self._limits.safety
         if safety is None or position is None or not safety.k_position:
             return -greatest, greatest
@@ -189,7 +186,9 @@ class JointLimiter:
 
 
 class CommandLimits:
-    """Limits the commands of all joints, and logs once for each interface that it had to limit.
+    """A limiter of the commands of all joints.
+
+    The first limited command of each interface is logged.
 
     Args:
         limiters: the limiters of the joints.
@@ -220,7 +219,7 @@ class CommandLimits:
 
 
 def _range(interface: InterfaceDescription | None) -> tuple[float, float]:
-    """Return the minimum and maximum of an interface in the description."""
+    """Return the minimum and maximum of an interface in the description, infinite if not given."""
     if interface is None:
         return _UNLIMITED
     return (
@@ -230,7 +229,7 @@ def _range(interface: InterfaceDescription | None) -> tuple[float, float]:
 
 
 def _greatest(interface: InterfaceDescription | None) -> float:
-    """Return the maximum magnitude of an interface in the description."""
+    """Return the largest magnitude that an interface permits in both directions."""
     lower, upper = _range(interface)
     return min(abs(lower), abs(upper))
 

@@ -27,9 +27,9 @@ _MODES = (POSITION, VELOCITY, ACCELERATION)
 
 
 class _Joint:
-    """A joint with its own state of motion.
+    """A simulated joint with all kinds of states.
 
-    Its interfaces show the part that the description declares.
+    The interfaces show only the states in the description.
     """
 
     def __init__(self, described: ComponentDescription, states: dict[str, StateInterface]) -> None:
@@ -45,7 +45,7 @@ class _Joint:
 
 
 class GenericSystem(Hardware):
-    """Hardware whose states follow its commands immediately."""
+    """Hardware whose states follow its commands."""
 
     def __init__(self, description: HardwareDescription, logger: Logger) -> None:
         super().__init__(description, logger)
@@ -78,7 +78,7 @@ class GenericSystem(Hardware):
             for state in self.states
             if self._offset_interface and state.kind == self._offset_interface and state.component in self._joints
         ]
-        # At 1 kHz each lookup counts: only dynamics and mimic joints need the state of a joint.
+        # At 1 kHz each lookup counts, so states are copied directly unless dynamics or a mimic joint requires them.
         tied = {other for joint, followed, _ in self._followers for other in (joint, followed)}
         joints = [joint for joint in self._joints.values() if self._dynamic or joint in tied]
         free = [joint for joint in self._joints.values() if not self._dynamic and joint not in tied]
@@ -106,9 +106,12 @@ class GenericSystem(Hardware):
                         self.commands.append(command)
 
     def prepare_switch(self, start: Collection[str], stop: Collection[str]) -> None:
-        """With dynamics, refuse to start a joint without a single mode.
+        """Check that each joint gets exactly one mode, if dynamics are calculated.
 
-        Its mode must be position, velocity or acceleration.
+        The mode is position, velocity or acceleration.
+
+        Raises:
+            HardwareError: a joint gets no mode or several modes.
         """
         if not self._dynamic:
             return
@@ -126,14 +129,14 @@ class GenericSystem(Hardware):
                 )
 
     def perform_switch(self, start: Collection[str], stop: Collection[str]) -> None:
-        """With dynamics, integrate the joints from these interfaces from now on."""
+        """Set the modes of joints to the started command interfaces, if dynamics are calculated."""
         for name, joint in self._joints.items():
             for mode in _MODES:
                 if self._dynamic and f"{name}/{mode}" in start:
                     joint.mode = mode
 
     def read(self, time_ns: int, period_s: float) -> None:
-        """Copy commands to states."""
+        """Compute the states from the commands."""
         if self._disabled:
             return
         for command, state, offset in self._copied:
@@ -176,7 +179,7 @@ class GenericSystem(Hardware):
                 joint.values[EFFORT] = effort
 
     def _move(self, joint: _Joint, period_s: float) -> None:
-        """Integrate one step from the previous values, as ros2_control does."""
+        """Integrate a joint over one period from its previous values, as ros2_control does."""
         values = joint.values
         wanted = _given(joint.commands.get(joint.mode))
         velocity = values[VELOCITY]
@@ -197,5 +200,5 @@ class GenericSystem(Hardware):
 
 
 def _given(command: Interface | None) -> float | None:
-    """Return the value of a command; None if there is none."""
+    """Return the value of a command, or None if there is no interface or no command."""
     return None if command is None or isnan(command.value) else command.value

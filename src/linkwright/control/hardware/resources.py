@@ -1,4 +1,4 @@
-"""The hardware of a robot, with its interfaces, their claims by controllers, and its lifecycle.
+"""The hardware of a robot, with its interfaces, claims of controllers, and lifecycle.
 
 Source: the resource manager of ros2_control (rules and messages).
 """
@@ -27,20 +27,20 @@ _DOWN = ("cleanup", "deactivate")
 
 
 def hardware_by_entry_points(description: HardwareDescription, logger: Logger) -> Hardware | None:
-    """Create the hardware of a description from its type name; None if no such type is installed."""
+    """Create the hardware of a description, or return None if its type is not installed."""
     found = hardware_class(description.plugin)
     return None if found is None else found(description, logger)
 
 
 class Resources:
-    """The hardware of a robot.
+    """The hardware of a robot, with the interfaces that controllers use.
 
     Args:
         logger: the logger of its events.
 
     Attributes:
         components: the hardware by name.
-        claims: the controllers that have claimed command interfaces, by the interface's name.
+        claims: the name of the controller that has claimed a command interface, by the interface's name.
     """
 
     def __init__(self, logger: Logger) -> None:
@@ -57,7 +57,7 @@ class Resources:
     # --- loading ------------------------------------------------------------------------------------------------------
 
     def load(self, descriptions: Sequence[HardwareDescription], make: Maker) -> None:
-        """Load the hardware; unknown types are replaced by a mock, with a warning."""
+        """Create hardware from descriptions; unknown types are replaced by a mock, with a warning."""
         for description in descriptions:
             self._logger.info(f"Loading hardware '{description.name}' ")
             try:
@@ -96,34 +96,37 @@ class Resources:
 
     @property
     def state_names(self) -> list[str]:
-        """The names of all state interfaces."""
+        """The names of all state interfaces, including states exported by controllers."""
         return [*self._states, *(interface.name for exported in self._exported.values() for interface in exported)]
 
     @property
     def command_names(self) -> list[str]:
-        """The names of all command interfaces, and of the references of chained controllers."""
+        """The names of all command interfaces, including references of chainable controllers."""
         return [*self._commands, *(interface.name for given in self._references.values() for interface in given)]
 
     def is_available(self, name: str) -> bool:
-        """Return whether an interface is available: its hardware is configured, or its controller active."""
+        """Return whether an interface is available.
+
+        Hardware must be configured, and controllers must be active, for their interfaces to be available.
+        """
         owner = self._owners.get(name)
         return name in self._available if owner is None else owner.state in (INACTIVE, ACTIVE)
 
     def states(self, names: Sequence[str] | Interfaces) -> list[StateInterface]:
-        """Return state interfaces.
+        """Return state interfaces by name, or all available ones.
 
         Raises:
-            KeyError: an interface does not exist, or is not available.
+            KeyError: a named interface does not exist, or is not available.
         """
         if names is Interfaces.ALL:
             return [all_state for all_state in self._all_states() if self.is_available(all_state.name)]
         return [self._one(name, self._all_states(), "State") for name in names]
 
     def commands(self, names: Sequence[str] | Interfaces) -> list[CommandInterface]:
-        """Return command interfaces.
+        """Return command interfaces by name, or all available ones.
 
         Raises:
-            KeyError: an interface does not exist, or is not available.
+            KeyError: a named interface does not exist, or is not available.
         """
         if names is Interfaces.ALL:
             return [all_command for all_command in self._all_commands() if self.is_available(all_command.name)]
@@ -148,11 +151,11 @@ class Resources:
         return found
 
     def offer(self, controller: str, references: list[CommandInterface], exported: list[StateInterface]) -> None:
-        """Add the references and states of a chainable controller."""
+        """Add the references and exported states of a chainable controller."""
         self._references[controller], self._exported[controller] = references, exported
 
     def withdraw(self, controller: str) -> None:
-        """Remove a controller's references."""
+        """Remove the references and exported states of a controller."""
         self.set_available(controller, available=False)
         self._references.pop(controller, None)
         self._exported.pop(controller, None)
@@ -162,7 +165,7 @@ class Resources:
         return [reference.name for reference in self._references.get(controller, ())]
 
     def set_available(self, controller: str, *, available: bool) -> None:
-        """Set whether a controller's references and states are available."""
+        """Set whether a controller's references and exported states are available."""
         names = {
             reference.name for reference in (*self._references.get(controller, ()), *self._exported.get(controller, ()))
         }
@@ -171,7 +174,7 @@ class Resources:
     # --- lifecycle ----------------------------------------------------------------------------------------------------
 
     def set_state(self, name: str, target: LifecycleState) -> bool:
-        """Bring hardware to a lifecycle state; return whether it reached that state."""
+        """Bring hardware to a lifecycle state, and return whether the state was reached."""
         hardware = self.components[name]
         if hardware.state == FINALIZED:
             return target == FINALIZED
@@ -201,9 +204,9 @@ class Resources:
     # --- updates ------------------------------------------------------------------------------------------------------
 
     def prepare_switch(self, start: Collection[str], stop: Collection[str]) -> str:
-        """Check whether the hardware allows a switch of command interfaces.
+        """Check whether all hardware permits a switch of command interfaces.
 
-        Returns the reason if not, else an empty string.
+        Returns an error message, or an empty string if the switch is possible.
         """
         for hardware in self.components.values():
             refusal = _failure_of(hardware.prepare_switch, start, stop)
@@ -213,16 +216,17 @@ class Resources:
         return ""
 
     def perform_switch(self, start: Collection[str], stop: Collection[str]) -> None:
-        """Switch the command interfaces."""
+        """Switch the command interfaces of all hardware; failures are logged."""
         for hardware in self.components.values():
             failure = _failure_of(hardware.perform_switch, start, stop)
             if failure:
                 self._logger.error(f"Component '{hardware.description.name}' could not perform switch: {failure}")
 
     def read(self, time_ns: int, period_s: float) -> list[Hardware]:
-        """Read all configured hardware.
+        """Read the states of all hardware that is inactive or active.
 
-        Returns the components that failed, which are logged and unconfigured.
+        Returns the components that failed. Their errors are logged, and they become unconfigured, or finalized if
+        handling the error fails, too.
         """
         failed = []
         for hardware in self.components.values():
@@ -237,7 +241,7 @@ class Resources:
         return failed
 
     def write(self, time_ns: int, period_s: float) -> list[Hardware]:
-        """Write to all active hardware; see `read` for the return value."""
+        """Write the commands of all active hardware; see `read` for failures."""
         failed = []
         for hardware in self.components.values():
             if hardware.state is ACTIVE:
@@ -259,15 +263,12 @@ class Resources:
         return hardware
 
     def names_of(self, hardware: Hardware) -> set[str]:
-        """Return the names of a hardware component's interfaces."""
+        """Return the names of all state and command interfaces of a hardware component."""
         return {state.name for state in (*hardware.states, *hardware.commands)}
 
 
 def _failure_of(callback: Callable[..., object], *arguments: object) -> str:
-    """Call a function of hardware.
-
-    Returns the message of the error that it raises, or an empty string.
-    """
+    """Call a function of hardware, and return the message of its error, or an empty string."""
     try:
         callback(*arguments)
     except Exception as error:  # noqa: BLE001 - a fault of hardware must not end the others

@@ -1,4 +1,4 @@
-"""Statistics of cycles: durations in microseconds, and rates in Hz.
+"""Statistics of the durations (in microseconds) and rates (in Hz) of cycles.
 
 Source: the statistics of ros2_control's controller manager (their selection and names).
 """
@@ -11,7 +11,7 @@ from time import perf_counter_ns
 
 
 class _Measured:
-    """The statistics of a number since the last reset."""
+    """The statistics of a measured quantity."""
 
     def __init__(self) -> None:
         self._count = 0
@@ -19,7 +19,7 @@ class _Measured:
         self._least, self._most, self._last = inf, -inf, nan
 
     def add(self, value: float) -> None:
-        """Add a value."""
+        """Update the statistics with a value."""
         self._count += 1
         before = value - self._mean
         self._mean += before / self._count
@@ -27,7 +27,7 @@ class _Measured:
         self._least, self._most, self._last = min(self._least, value), max(self._most, value), value
 
     def items(self) -> Iterator[tuple[str, float]]:
-        """Iterate over the statistics with their names; NaN while there are no values."""
+        """Iterate over the names and values of the statistics; without values, they are NaN."""
         known = self._count > 0
         yield "average", self._mean if known else nan
         yield "min", self._least if known else nan
@@ -62,7 +62,7 @@ class Timing:
             self._execution.add((perf_counter_ns() - began) / 1e3)
 
     def items(self) -> Iterator[tuple[str, float]]:
-        """Iterate over the statistics with their names."""
+        """Iterate over the names and values of the statistics."""
         for kind, measured in (("execution_time", self._execution), ("periodicity", self._periodicity)):
             for name, value in measured.items():
                 yield f"{kind}/{name}", value

@@ -1,1 +1,1 @@
-"""The controller manager: loading, switching and updating controllers."""
+"""The controller manager, which loads, switches and updates controllers."""

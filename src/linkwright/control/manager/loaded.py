@@ -19,7 +19,7 @@ class Loaded:
     Attributes:
         name, type: the controller's name and type name.
         controller: the controller.
-        fallbacks: the controllers to activate if it fails.
+        fallbacks: the names of the controllers to activate if this one fails.
         period_ns: the time between two updates; 0 to update in each cycle of the manager.
         next_ns: the time of the next update.
         before: the last finite values of its commands.
@@ -58,7 +58,7 @@ class Loaded:
     def wanted_commands(self, known: list[str]) -> list[str]:
         """Return the names of the command interfaces that the controller claims.
 
-        If it requests all interfaces, the result contains all available ones.
+        If the controller claims all interfaces, these are the `known` ones.
         """
         wanted = self.controller.command_interfaces()
         return [*known] if isinstance(wanted, Interfaces) else [*wanted]
@@ -66,22 +66,22 @@ class Loaded:
     def wanted_states(self, known: list[str]) -> list[str]:
         """Return the names of the state interfaces that the controller reads.
 
-        If it requests all interfaces, the result contains all available ones.
+        If the controller reads all interfaces, these are the `known` ones.
         """
         wanted = self.controller.state_interfaces()
         return [*known] if isinstance(wanted, Interfaces) else [*wanted]
 
     def replace_invalid_commands(self) -> str:
-        """Replace commands that are not finite by the last position, or by a velocity or effort of 0.
+        """Replace positions that are not finite by the last finite ones, and other commands by 0.
 
         Returns:
-            The name of one of these commands, or an empty string.
+            The name of the first replaced interface, or an empty string.
         """
         commands = self.controller.commands
         if not commands:
             return ""
         values = [command.value for command in commands]
-        if isfinite(sum(values)) or all(map(isfinite, values)):  # the usual case; a sum may overflow
+        if isfinite(sum(values)) or all(map(isfinite, values)):  # A sum is fast, but may overflow.
             self.before = values
             return ""
         wrong = ""
@@ -93,13 +93,13 @@ class Loaded:
             elif isfinite(before[place]):
                 wrong = wrong or command.name
                 command.value = before[place] if command.kind == POSITION else 0.0
-            elif value == value:  # infinite, without a previous value
+            elif value == value:  # Infinite, without a finite command before.
                 wrong = wrong or command.name
                 command.value = before[place]
         return wrong
 
     def halt(self) -> None:
-        """Command 0 to the velocity, acceleration and effort interfaces that the controller claimed."""
+        """Command 0 to the claimed interfaces that have a command, except positions."""
         for command in self.controller.commands:
             if command.kind != POSITION and isfinite(command.value):
                 command.value = 0.0

@@ -1,4 +1,4 @@
-"""The controller manager: loads, configures, switches and updates controllers.
+"""The controller manager, which loads, configures, switches and updates controllers.
 
 Source: the controller manager of ros2_control (order of steps, rules, messages).
 """
@@ -31,7 +31,7 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 @dataclass(frozen=True, slots=True)
 class SavedState:
-    """The state of a manager, for another manager that replaces it.
+    """The state of a manager, from which another manager can continue.
 
     Attributes:
         parameters: the parameters of the manager's node, by name.
@@ -43,7 +43,7 @@ class SavedState:
 
 
 class ControllerManager:
-    """Manages the controllers of a robot. All methods are called in one thread, the update thread.
+    """The manager of a robot's controllers, for use in the update thread only.
 
     Args:
         node: the manager's node, which accepts undeclared parameters.
@@ -53,10 +53,12 @@ class ControllerManager:
         update_rate: the update rate, in Hz.
 
     Attributes:
-        node, resources, update_rate: see above.
+        node: the manager's node.
+        resources: the hardware.
+        update_rate: the update rate, in Hz.
         robot_description: the URDF of the robot.
         controllers: the loaded controllers by name, in the order in which they are updated.
-        limits: keeps commands within the limits of joints; None if limits are not enforced.
+        limits: limits the commands to joints; None if limits are not enforced.
         on_change: called when the state of a controller or of hardware has changed.
     """
 
@@ -84,9 +86,9 @@ class ControllerManager:
     # --- loading ------------------------------------------------------------------------------------------------------
 
     def load(self, name: str) -> bool:
-        """Load a controller whose type is given by the parameter ``NAME.type``.
+        """Load a controller with the type in the parameter ``NAME.type``.
 
-        Returns whether that succeeded.
+        Returns whether that succeeded; errors are logged.
         """
         logger = self._logger
         if name in self.controllers:
@@ -135,7 +137,7 @@ class ControllerManager:
         return None
 
     def unload(self, name: str) -> bool:
-        """Unload a controller, which must not be active; return whether that succeeded."""
+        """Unload a controller, unless it is active, and return whether that succeeded."""
         loaded = self.controllers.get(name)
         if loaded is None or loaded.is_active:
             why = "it is still active" if loaded is not None else "no controller with this name exists"
@@ -149,9 +151,9 @@ class ControllerManager:
         return True
 
     def reload(self, *, force: bool) -> bool:
-        """Unload all controllers; return whether that succeeded.
+        """Unload all controllers, and return whether that succeeded.
 
-        Active controllers prevent it unless `force` is true.
+        Nothing is unloaded if a controller is active, unless `force` is set.
         """
         active = [controller.name for controller in self._active]
         if active and not force:
@@ -169,13 +171,13 @@ class ControllerManager:
         return True
 
     def saved_state(self) -> SavedState:
-        """Return the state of this manager, for `resume`."""
+        """Return the manager's parameters and the states of its controllers, for `resume`."""
         parameters = {name: each.value for name, each in self.node.get_parameters_by_prefix("").items()}
         states = tuple((controller.name, controller.controller.state.label) for controller in self.controllers.values())
         return SavedState(parameters, states)
 
     def resume(self, saved: SavedState) -> None:
-        """Load, configure and activate the controllers of another manager, as far as possible."""
+        """Load another manager's controllers, and bring them to their states as far as possible."""
         new = [
             Parameter(name, value=value)
             for name, value in saved.parameters.items()
@@ -191,16 +193,16 @@ class ControllerManager:
             self.switch(active, (), BEST_EFFORT)
 
     def close(self) -> None:
-        """Deactivate all controllers, and shut down."""
+        """Deactivate all controllers, and remove their nodes."""
         for loaded in reversed(tuple(self._active)):
             self._deactivate(loaded)
         for name in tuple(self.controllers):
             self.controllers.pop(name).controller.node.close()
 
-    # --- configuring --------------------------------------------------------------------------------------------------
+    # --- configuration ------------------------------------------------------------------------------------------------
 
     def configure(self, name: str) -> bool:
-        """Configure a controller; return whether it is inactive afterwards."""
+        """Configure a controller that is not active, and return whether that succeeded."""
         self._logger.info(f"Configuring controller '{name}'")
         loaded = self.controllers.get(name)
         if loaded is None:
@@ -231,7 +233,7 @@ class ControllerManager:
         return True
 
     def cleanup(self, name: str) -> bool:
-        """Bring an inactive controller back to unconfigured; return whether that succeeded."""
+        """Clean up an inactive controller, and return whether that succeeded."""
         loaded = self.controllers.get(name)
         if loaded is None or not loaded.is_inactive:
             why = "it is not inactive" if loaded is not None else "no controller with this name exists"
@@ -260,7 +262,7 @@ class ControllerManager:
         return done
 
     def _sort(self) -> None:
-        """Sort the controllers by their dependencies.
+        """Sort the controllers by their dependencies, into the order of updates.
 
         A controller precedes those whose references it commands, and follows those whose exported states it only reads.
         A controller that does both precedes them, such as a drive above PID controllers that export wheel speeds.
@@ -292,10 +294,10 @@ class ControllerManager:
     def switch(
         self, activate: Sequence[str], deactivate: Sequence[str], strictness: int = BEST_EFFORT
     ) -> tuple[bool, str]:
-        """Deactivate controllers and activate others.
+        """Deactivate some controllers and activate others.
 
         Returns:
-            Whether that succeeded as far as the strictness requires, and a message about it.
+            Whether that succeeded as far as the strictness requires, and a message for the user.
         """
         if strictness == 0:
             self._logger.warning(
@@ -346,7 +348,7 @@ class ControllerManager:
             loaded.controller.chained = chained
 
     def _activate(self, loaded: Loaded) -> str:
-        """Activate a controller; return the reason if that failed, else an empty string."""
+        """Activate a controller, and return an error message, or an empty string if that succeeded."""
         controller, resources, name = loaded.controller, self.resources, loaded.name
         wanted = loaded.wanted_commands(
             [command_name for command_name in resources.command_names if resources.is_available(command_name)]
@@ -400,7 +402,7 @@ class ControllerManager:
         loaded.controller.commands, loaded.controller.states = [], []
 
     def _call(self, loaded: Loaded, what: str, callback: Callable[[], object]) -> bool:
-        """Call a callback of a controller; return whether it succeeded. An error is logged."""
+        """Call a callback of a controller, log any error, and return whether the callback succeeded."""
         logger = loaded.controller.node.logger
         try:
             callback()
@@ -421,9 +423,9 @@ class ControllerManager:
             logger.error(_traced("Caught exception in callback for on_error", error))  # noqa: TRY400 - as above
 
     def set_hardware_state(self, name: str, target: LifecycleState) -> bool:
-        """Bring hardware to a lifecycle state; return whether it reached that state.
+        """Bring hardware to a lifecycle state, and return whether the state was reached.
 
-        If active hardware leaves that state, its controllers are deactivated first.
+        If active hardware is deactivated, its controllers are deactivated first.
         """
         hardware = self.resources.components[name]
         if hardware.state is ACTIVE and target is not ACTIVE:
@@ -446,7 +448,7 @@ class ControllerManager:
             self._stop_those_of(failed)
         for loaded in self._active:
             if loaded.controller.state is not ACTIVE:
-                continue  # deactivated because an earlier controller failed
+                continue  # Deactivated in this cycle, because an earlier controller failed.
             if loaded.period_ns:
                 if time_ns < loaded.next_ns:
                     continue
@@ -460,7 +462,7 @@ class ControllerManager:
                 else:
                     loaded.timing.measure(loaded.controller.step, time_ns, step_s)
             except Exception as error:  # noqa: BLE001 - a fault of a controller must not end the others
-                self._fail(loaded, error)  # replaces `_active`
+                self._fail(loaded, error)  # Safe while iterating: a new list replaces `_active`.
                 continue
             wrong = loaded.replace_invalid_commands()
             if wrong:
@@ -478,9 +480,9 @@ class ControllerManager:
         )
 
     def _fail(self, loaded: Loaded, error: Exception) -> None:
-        """Deactivate a controller whose update failed, and the controllers that command it.
+        """Handle an exception in a controller's update.
 
-        Their joints are stopped.
+        The controller and those that command it are deactivated, their joints are stopped, and fallbacks are activated.
         """
         message = _traced("Caught exception while updating", error)
         if isinstance(error, ControllerError):
@@ -496,7 +498,7 @@ class ControllerManager:
             self.switch(loaded.fallbacks, (), BEST_EFFORT)
 
     def _commanding(self, loaded: Loaded) -> list[Loaded]:
-        """Return the active controllers that command a controller's references, directly or indirectly."""
+        """Return the active controllers that command a controller directly or indirectly."""
         references = self.resources.references_of(loaded.name)
         owners = dict.fromkeys(
             self.resources.claims[reference] for reference in references if reference in self.resources.claims
@@ -543,11 +545,11 @@ class ControllerManager:
 
 
 def _owners(interfaces: Iterable[str]) -> set[str]:
-    """Return the prefixes of interface names, which are joints or controllers."""
+    """Return the components that interface names begin with: joints or controllers."""
     return {interface.partition("/")[0] for interface in interfaces}
 
 
 def _traced(what: str, error: Exception) -> str:
-    """Return the text of an error with its place in the code, for authors of controllers."""
+    """Return an error message with a traceback, for authors of controllers."""
     frames = traceback.format_exception(type(error), error, error.__traceback__)
     return f"{what}: {type(error).__name__}: {error}\n{''.join(frames).rstrip()}"

@@ -1,4 +1,4 @@
-"""The nodes of controllers: their names, parameters and remappings.
+"""Creation of controllers' nodes, with their names, parameters and remappings.
 
 Source: the controller manager of ros2_control. A controller's node gets its parameters from the files that the
 manager's process was started with, then from the files in ``NAME.params_file``, then from ``NAME.node_options_args``.
@@ -21,11 +21,11 @@ _OF_THE_PROCESS = ("__node", "__name", "__ns")
 
 @dataclass(slots=True)
 class ProcessArguments:
-    """The arguments of the process or plugin that apply to all nodes of its manager.
+    """The arguments of a process or plugin that apply to all nodes of its manager.
 
     Attributes:
         parameters: the parameters by node name.
-        remappings: rules ``(from, to)``.
+        remappings: the rules as pairs ``(from, to)``.
     """
 
     parameters: ParameterRules = field(default_factory=ParameterRules)
@@ -33,7 +33,7 @@ class ProcessArguments:
 
 
 def controller_node(manager: Node, name: str, process: ProcessArguments) -> Node:
-    """Create a node for a controller.
+    """Create the node of a controller.
 
     Raises:
         LinkwrightError: the node's name, or one of its files or arguments, is not valid.
@@ -70,7 +70,7 @@ def controller_node(manager: Node, name: str, process: ProcessArguments) -> Node
 def words_of(node: Node, name: str) -> list[str]:
     """Return the strings in a parameter that is a string or a list of strings.
 
-    The result is empty if the parameter is not set.
+    Returns an empty list if the parameter is not set.
     """
     value = node.get_parameter_or(name).value
     if not value:

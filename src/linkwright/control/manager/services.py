@@ -24,7 +24,7 @@ _STATES = {state.state_id: state for state in (UNCONFIGURED, INACTIVE, ACTIVE, F
 
 
 class ManagerServices:
-    """The services and topics of a manager.
+    """The services and topics of a controller manager.
 
     Args:
         manager: the manager.
@@ -57,7 +57,7 @@ class ManagerServices:
         self.publish_activity()
 
     def publish_activity(self) -> None:
-        """Publish the states of controllers and hardware."""
+        """Publish the lifecycle states of controllers and hardware."""
         message = get_message(f"{_PACKAGE}/msg/ControllerManagerActivity")()
         message.header.stamp = self._manager.node.get_clock().now().to_msg()
         message.controllers = [
@@ -70,7 +70,10 @@ class ManagerServices:
         self._activity.publish(message)
 
     def publish_diagnostics(self) -> None:
-        """Publish diagnostics once a second: whether everything is active, and how long it takes."""
+        """Publish whether controllers and hardware are active, and the statistics.
+
+        The caller is a timer with a period of 1 s.
+        """
         if self._statistics is not None:
             self._statistics.publish()
         if not self._diagnostics.is_wanted:
@@ -170,7 +173,7 @@ class ManagerServices:
 
 
 def _service_name(name: str) -> str:
-    """Return the name of a service from its type name: ``list_controllers`` for ``ListControllers``."""
+    """Return a service's name for its type: ``list_controllers`` for ``ListControllers``."""
     return "".join(f"_{each.lower()}" if each.isupper() else each for each in name).lstrip("_")
 
 
@@ -188,7 +191,7 @@ def _list_types(_: Any, response: Any) -> Any:
         try:
             found = controller_class(name)
         except LinkwrightError:
-            continue  # its package is broken; loading it reports that
+            continue  # The error of a broken package is reported on loading.
         chains = found.reference_interfaces is not Controller.reference_interfaces
         response.types.append(name)
         response.base_classes.append(_CHAINABLE if chains else _PLAIN)

@@ -1,4 +1,4 @@
-"""Loading of hardware according to a manager's parameters and the robot's description.
+"""Loading of hardware from the robot's description and a manager's parameters.
 
 Source: the controller manager of ros2_control, with the names of Humble and of Jazzy.
 """
@@ -21,7 +21,7 @@ _INITIAL = "hardware_components_initial_state"
 
 
 def load_hardware(manager: ControllerManager, text: str, library: DescriptionLibrary, make: Maker) -> bool:
-    """Load the hardware of a description, and bring it to its configured lifecycle states.
+    """Load the hardware of a description, and bring it to its initial lifecycle states.
 
     The manager's parameters specify these states.
 
@@ -29,7 +29,7 @@ def load_hardware(manager: ControllerManager, text: str, library: DescriptionLib
         manager: the manager.
         text: the URDF.
         library: the robot descriptions that the process has read.
-        make: creates hardware.
+        make: creates hardware from its description.
 
     Returns:
         Whether the description is readable; its errors are logged.
@@ -66,7 +66,7 @@ def load_hardware(manager: ControllerManager, text: str, library: DescriptionLib
 
 
 def _limits_of(robot: Robot, resources: Resources, logger: Logger) -> CommandLimits:
-    """Return an object that limits the hardware's commands by the limits of the robot's joints."""
+    """Return the command limits of the hardware, from the limits of the robot's joints."""
     limiters = []
     for hardware in resources.components.values():
         for joint in hardware.description.joints:

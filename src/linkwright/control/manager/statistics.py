@@ -20,7 +20,7 @@ _PACKAGE = "pal_statistics_msgs/msg"
 
 
 class StatisticsTopics:
-    """Publishes the statistics of a manager.
+    """The topics on which the statistics of a manager are published.
 
     Args:
         manager: the manager.
@@ -36,7 +36,10 @@ class StatisticsTopics:
         self._version = 0
 
     def publish(self) -> None:
-        """Publish the statistics once a second; without subscriptions, switch measuring off."""
+        """Publish the statistics, or switch measuring off if there is no subscription.
+
+        The caller is a timer with a period of 1 s.
+        """
         wanted = self._full.is_wanted or self._values.is_wanted
         timings = dict(self._timings(wanted=wanted))
         if not wanted:
@@ -60,7 +63,7 @@ class StatisticsTopics:
             self._full.publish(full)
 
     def _timings(self, *, wanted: bool) -> Iterator[tuple[str, Timing]]:
-        """Switch measuring on or off, and iterate over the active timings with their name prefixes."""
+        """Switch measuring on or off, and iterate over the timings with the prefixes of their names."""
         for name, loaded in self._manager.controllers.items():
             loaded.timing = (loaded.timing or Timing()) if wanted else None
             if loaded.timing is not None:

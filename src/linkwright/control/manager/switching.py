@@ -1,4 +1,4 @@
-"""Planning of a controller switch: which controllers to activate and deactivate, or why not.
+"""Planning of a controller switch, which determines the controllers to activate and deactivate.
 
 Source: the controller manager of ros2_control (rules of chains, strictness, messages).
 """
@@ -22,15 +22,15 @@ _MORE = (
 
 
 class SwitchRefusedError(Exception):
-    """Raised when a switch is refused; the text gives the reason."""
+    """Raised when a switch is refused; the message gives the reason."""
 
 
 @dataclass(slots=True)
 class Switch:
-    """The controllers to be deactivated and activated.
+    """A planned switch of controllers.
 
     Attributes:
-        activate, deactivate: names of controllers, in order.
+        activate, deactivate: the names of the controllers to activate and deactivate, in order.
         to_chained, from_chained: names of the controllers whose references other controllers start or stop commanding.
     """
 
@@ -41,7 +41,7 @@ class Switch:
 
 
 class SwitchPlanner:
-    """Plans a controller switch.
+    """A planner of one controller switch.
 
     Args:
         controllers: the loaded controllers, by name.
@@ -62,7 +62,7 @@ class SwitchPlanner:
         self._switch = Switch()
 
     def plan(self, activate: Sequence[str], deactivate: Sequence[str]) -> Switch:
-        """Plan a switch.
+        """Plan a switch, without impossible parts of the request unless the switch is strict.
 
         Raises:
             SwitchRefusedError: a part of the request is impossible, and the strictness requires a refusal.

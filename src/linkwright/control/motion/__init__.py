@@ -1,1 +1,1 @@
-"""The arithmetic of controllers, without ROS, so that each module can be tested in isolation."""
+"""The computations of controllers, which do not depend on ROS."""

@@ -1,6 +1,4 @@
-"""Limits of steered wheels for velocity, steering angle and their derivatives.
-
-They apply in both directions.
+"""Limits of a driven and steered wheel for velocity, steering angle and their derivatives, in both directions.
 
 Source: the limiters of tricycle_controller. Two things differ: a minimum never makes a wheel move that is at rest, and
 the bound of a second difference is not doubled.
@@ -17,12 +15,12 @@ ANY: Bounds = (0.0, inf)
 
 
 class TractionLimiter:
-    """Limits a speed and its derivatives.
+    """A limiter of a wheel's speed and its derivatives.
 
     Args:
         velocity: the bounds of the speed's magnitude, in rad/s.
-        acceleration: the bounds of the rate at which it increases, in rad/s2.
-        deceleration: the bounds of the rate at which it decreases, in rad/s2.
+        acceleration: the bounds of the rate at which the speed increases, in rad/s2.
+        deceleration: the bounds of the rate at which the speed decreases, in rad/s2.
         jerk: the bounds of the rate at which the acceleration changes, in rad/s3.
 
     Attributes:
@@ -39,11 +37,11 @@ class TractionLimiter:
         self.restart()
 
     def restart(self) -> None:
-        """Restart at zero."""
+        """Reset the speed and the acceleration to zero."""
         self.speed = self._before = 0.0
 
     def follow(self, wanted: float, seconds: float) -> float:
-        """Return the limited speed, `seconds` after the last one."""
+        """Return the next speed towards a wanted one, `seconds` after the last call."""
         speed = self.speed
         wanted = _limit_second_difference(speed, self._before, wanted, self._jerk, seconds)
         bounds = self._acceleration if abs(wanted) >= abs(speed) else self._deceleration
@@ -53,12 +51,12 @@ class TractionLimiter:
 
 
 class SteeringLimiter:
-    """Limits an angle and its derivatives.
+    """A limiter of a steering angle and its derivatives.
 
     Args:
         position: the minimum and maximum angle, in rad.
-        velocity: the bounds of the rate at which it changes, in rad/s.
-        acceleration: the bounds of the rate at which the velocity changes, in rad/s2.
+        velocity: the bounds of the rate at which the angle changes, in rad/s.
+        acceleration: the bounds of the rate at which that velocity changes, in rad/s2.
 
     Attributes:
         angle: the current angle.
@@ -71,11 +69,11 @@ class SteeringLimiter:
         self.restart()
 
     def restart(self, angle: float = 0.0) -> None:
-        """Restart at an angle."""
+        """Reset the angle to a value, at rest."""
         self.angle = self._before = angle
 
     def follow(self, wanted: float, seconds: float) -> float:
-        """Return the limited angle, `seconds` after the last one."""
+        """Return the next angle towards a wanted one, `seconds` after the last call."""
         angle = self.angle
         wanted = _limit_second_difference(angle, self._before, wanted, self._acceleration, seconds)
         reached = angle + _within(self._velocity, wanted - angle, seconds)
@@ -84,13 +82,16 @@ class SteeringLimiter:
 
 
 def _limit_second_difference(now: float, before: float, wanted: float, bounds: Bounds, seconds: float) -> float:
-    """Return a value, limited so that its second difference is within bounds."""
+    """Return the wanted value, limited so that the second difference is within bounds.
+
+    `now` and `before` are the last two values; `seconds` is the time between values.
+    """
     straight = now + now - before
     return straight + _within(bounds, wanted - straight, seconds * seconds)
 
 
 def _within(bounds: Bounds, value: float, factor: float = 1.0) -> float:
-    """Return a value, limited so that its magnitude is within bounds; 0 stays 0."""
+    """Return a value with its magnitude limited to bounds times a factor; 0 stays 0."""
     if value == 0.0:
         return value
     return copysign(min(max(abs(value), bounds[0] * factor), bounds[1] * factor), value)

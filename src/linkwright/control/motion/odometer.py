@@ -1,4 +1,4 @@
-"""Odometry of a robot from its wheels."""
+"""Odometry of a robot from its velocities."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _STANDING: Velocity = (0.0, 0.0, 0.0)
 
 
 class Odometer:
-    """Integrates velocities to a pose, and smooths them.
+    """An integrator of velocities to a pose, which also smooths the velocities.
 
     Args:
         window: the number of velocities in the rolling mean; at least 1.
@@ -30,17 +30,17 @@ class Odometer:
         self.reset()
 
     def reset(self, x: float = 0.0, y: float = 0.0, yaw: float = 0.0) -> None:
-        """Set the pose, in m and rad."""
+        """Set the pose, in m and rad, and the velocity to zero."""
         self.place = PlanarPose(x, y, yaw)
         self.reset_velocity()
 
     def reset_velocity(self) -> None:
-        """Reset the velocities, and keep the pose."""
+        """Set the velocity to zero, and keep the pose."""
         self._last.clear()
         self.velocity = _STANDING
 
     def measure(self, velocity: Velocity, seconds: float) -> None:
-        """Integrate a measured velocity over a duration."""
+        """Integrate a measured velocity over a duration, and update the rolling mean."""
         self._go(velocity, seconds)
         last = self._last
         last.append(velocity)
@@ -49,7 +49,7 @@ class Odometer:
         self.velocity = forward / count, sideways / count, angular / count
 
     def assume(self, velocity: Velocity, seconds: float) -> None:
-        """Integrate a commanded velocity, which is reported without smoothing."""
+        """Integrate a commanded velocity over a duration; it becomes the velocity without smoothing."""
         self._go(velocity, seconds)
         self.velocity = velocity
 

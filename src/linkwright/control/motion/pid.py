@@ -71,7 +71,7 @@ class Pid:
         Args:
             error: the error, in any unit.
             period_s: the time since the last call, in seconds.
-            rate: how fast the error changes, in its unit per second; None to compute it from the previous error.
+            rate: the error's rate of change, in its unit per second; None to compute the rate from the previous error.
 
         Returns:
             The command; 0 if an argument is not finite or no time has passed, in which case the controller's state is

@@ -1,7 +1,7 @@
-"""Segments of trajectories, which are splines from one point to the next.
+"""The segments of a trajectory, which are splines from one point to the next.
 
-Source: joint_trajectory_controller of ros2_controllers. Between positions alone a joint moves along a straight line,
-with velocities along a cubic polynomial, and with accelerations as well along a quintic polynomial.
+Source: joint_trajectory_controller of ros2_controllers. Between positions alone, a joint moves along a straight line;
+with velocities, along a cubic polynomial; with accelerations as well, along a quintic polynomial.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ class MotionState:
     Each list is empty or has one value per joint.
 
     Attributes:
-        positions: rad or m.
-        velocities: rad/s or m/s.
-        accelerations: rad/s² or m/s².
+        positions: the positions in rad or m.
+        velocities: the velocities in rad/s or m/s.
+        accelerations: the accelerations in rad/s² or m/s².
     """
 
     positions: list[float] = field(default_factory=list)
@@ -61,7 +61,7 @@ class Segment:
         self._polynomials = polynomials
 
     def at(self, seconds: float) -> MotionState:
-        """Return the state at a time in s after the start; all three lists are filled."""
+        """Return the state at a time in seconds after the start, with values in all three lists."""
         positions: list[float] = []
         velocities: list[float] = []
         accelerations: list[float] = []
@@ -74,7 +74,7 @@ class Segment:
 
 
 def _cubic(p0: float, p1: float, v0: float, v1: float, duration: float) -> _Polynomial:
-    """Return the cubic polynomial between two positions and velocities."""
+    """Return the cubic polynomial with given positions and velocities at both ends."""
     way, length = p1 - p0, duration
     return (
         p0,
@@ -87,7 +87,7 @@ def _cubic(p0: float, p1: float, v0: float, v1: float, duration: float) -> _Poly
 
 
 def _quintic(p0: float, p1: float, v0: float, v1: float, a0: float, a1: float, duration: float) -> _Polynomial:
-    """Return the quintic polynomial between two positions, velocities and accelerations."""
+    """Return the quintic polynomial with given values and two derivatives at both ends."""
     way, length = p1 - p0, duration
     return (
         p0,

@@ -1,4 +1,4 @@
-"""Tolerances of joints along a trajectory, and at its end.
+"""Tolerances of joints along a trajectory and at its end.
 
 Source: joint_trajectory_controller of ros2_controllers, and control_msgs' ``JointTolerance``.
 """
@@ -17,9 +17,9 @@ class StateTolerance:
     """The maximum errors of a joint; 0 allows any error.
 
     Attributes:
-        position: rad or m.
-        velocity: rad/s or m/s.
-        acceleration: rad/s² or m/s².
+        position: the maximum position error in rad or m.
+        velocity: the maximum velocity error in rad/s or m/s.
+        acceleration: the maximum acceleration error in rad/s² or m/s².
     """
 
     position: float = 0.0
@@ -27,7 +27,7 @@ class StateTolerance:
     acceleration: float = 0.0
 
     def holds(self, position: float, velocity: float, acceleration: float) -> bool:
-        """Return whether errors are within the tolerance."""
+        """Return whether all three errors are within the tolerance."""
         return (
             not (self.position > 0.0 and abs(position) > self.position)
             and not (self.velocity > 0.0 and abs(velocity) > self.velocity)
@@ -35,7 +35,7 @@ class StateTolerance:
         )
 
     def violations(self, position: float, velocity: float, acceleration: float) -> Iterator[tuple[str, float, float]]:
-        """Iterate over the errors that are too large: the name, the error and the tolerance of each."""
+        """Iterate over the errors outside the tolerance, as name, error and tolerance."""
         errors = (
             ("Position", position, self.position),
             ("Velocity", velocity, self.velocity),
@@ -46,7 +46,7 @@ class StateTolerance:
                 yield name, error, limit
 
     def overridden(self, position: float, velocity: float, acceleration: float) -> StateTolerance:
-        """Return the tolerance with a goal's values: 0 leaves a value unchanged, -1 removes it.
+        """Return a copy overridden by a goal's values: 0 keeps a tolerance, -1 removes it.
 
         Raises:
             ValueError: a value is another negative number.
@@ -63,8 +63,8 @@ class Tolerances:
     """The tolerances of a trajectory.
 
     Attributes:
-        path: the tolerances along the trajectory, for each joint.
-        goal: the tolerances at its end, for each joint.
+        path: the tolerances of each joint along the trajectory.
+        goal: the tolerances of each joint at the end.
         goal_time_s: how many seconds after the end the goal must be reached; 0 for no limit.
     """
 
@@ -73,11 +73,11 @@ class Tolerances:
     goal_time_s: float = 0.0
 
     def with_path(self, joint: int, tolerance: StateTolerance) -> Tolerances:
-        """Return a copy with another tolerance for a joint along the trajectory."""
+        """Return a copy with another tolerance along the trajectory for a joint, given by its index."""
         return replace(self, path=(*self.path[:joint], tolerance, *self.path[joint + 1 :]))
 
     def with_goal(self, joint: int, tolerance: StateTolerance) -> Tolerances:
-        """Return a copy with another tolerance for a joint at the end."""
+        """Return a copy with another tolerance at the end for a joint, given by its index."""
         return replace(self, goal=(*self.goal[:joint], tolerance, *self.goal[joint + 1 :]))
 
 

@@ -15,11 +15,11 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 @dataclass(slots=True)
 class TrajectoryPoint:
-    """A state at a time.
+    """A state at a time after the start of a trajectory.
 
     Attributes:
         time_ns: the time after the start of the trajectory, in nanoseconds.
-        state: the state of all joints; empty parts are computed, see `Trajectory.begin`.
+        state: the state of all joints; missing positions are computed, see `Trajectory.begin`.
     """
 
     time_ns: int
@@ -28,13 +28,13 @@ class TrajectoryPoint:
 
 @dataclass(frozen=True, slots=True)
 class Sample:
-    """A sample of a trajectory.
+    """The state of a trajectory at a time.
 
     Attributes:
         state: the state at the sampled time.
-        index: the number of the point that was passed last; 0 also before the first point.
-        point_ns: when that point is due, as a point in time in nanoseconds.
-        ended: whether that is the last point, and it has been reached.
+        index: the index of the point that was passed last; 0 before the first point, too.
+        point_ns: the time of that point, in nanoseconds.
+        ended: whether the last point has been passed.
     """
 
     state: MotionState
@@ -48,8 +48,8 @@ class Trajectory:
 
     Args:
         points: at least one point, in order of time.
-        start_ns: the point in time at which the trajectory starts; 0 to start when `begin` is called.
-        interpolated: whether joints move from point to point; otherwise they are sent directly to the next point.
+        start_ns: the time at which the trajectory starts; 0 to start when `begin` is called.
+        interpolated: whether joints move along the splines; otherwise the next point is commanded at once.
     """
 
     def __init__(self, points: Sequence[TrajectoryPoint], start_ns: int = 0, *, interpolated: bool = True) -> None:
@@ -59,10 +59,10 @@ class Trajectory:
         self.begun = False
 
     def begin(self, time_ns: int, before: MotionState, wrapped: Sequence[bool] = ()) -> None:
-        """Start from a state.
+        """Start the trajectory from the current state.
 
-        The positions that a point lacks are computed by uniform motion from the previous point, and so are missing
-        velocities.
+        Positions that a point lacks are integrated from velocities, and velocities that are then missing from
+        accelerations.
 
         Args:
             time_ns: the time of the state `before`.
@@ -93,7 +93,7 @@ class Trajectory:
         self._end = Sample(end, len(self.points) - 1, self._starts[-1], ended=True)
 
     def sample(self, time_ns: int) -> Sample | None:
-        """Return the sample at a time, in nanoseconds; None before the trajectory has started.
+        """Return the sample at a time in nanoseconds, or None before the time passed to `begin`.
 
         Segment number n leads from ``_starts[n]`` to ``_starts[n + 1]``, and the first segment from the state before.
         """
@@ -122,13 +122,16 @@ class Trajectory:
 
 
 def shortest_turn(start: float, end: float) -> float:
-    """Return the shortest angle in rad from one angle to another, more than -pi and not more than pi."""
+    """Return the smallest rotation from one angle to another, in rad, within (-pi, pi]."""
     turn = (end - start) % tau
     return turn - tau if turn > pi else turn
 
 
 def _with_positions(before: MotionState, state: MotionState, seconds: float) -> MotionState:
-    """Return a state with positions, which are integrated from its derivatives if they are missing."""
+    """Return a state with positions, integrated from its velocities or accelerations if missing.
+
+    `before` is the state `seconds` earlier.
+    """
     if state.positions:
         return state
     none = [0.0] * len(before.positions)

@@ -16,7 +16,7 @@ from linkwright.nodes.options import NodeOptions, create_node
 
 
 class HardwareSpawner(ManagerProgram):
-    """The running node, which ends after its requests to the hardware have been answered.
+    """The running node, which exits when its requests to the hardware have been answered.
 
     Raises:
         LinkwrightError: NODE831, the command line cannot be parsed.

@@ -25,18 +25,18 @@ _ATTEMPTS = 3
 class NoManagerError(Exception):
     """Raised when the manager's services are missing or do not answer.
 
-    The text is that of ros2_control.
+    The message is that of ros2_control.
     """
 
 
 class ManagerClient:
-    """Calls the services of a controller manager.
+    """A client of the services of a controller manager.
 
     Args:
-        node: the node that calls.
+        node: the node that calls the services.
         manager: the name of the manager's node, relative to the namespace of `node`.
         timeout: seconds to wait for a service; 0 for no limit.
-        call_timeout: seconds to wait for an answer.
+        call_timeout: seconds to wait for a response.
     """
 
     def __init__(self, node: Node, manager: str, timeout: float = 0.0, call_timeout: float = 10.0) -> None:
@@ -46,7 +46,7 @@ class ManagerClient:
         self._timeout, self._call_timeout = timeout, call_timeout
 
     async def ask(self, service: str, **fields: Any) -> Any:
-        """Call one of the manager's services, such as ``list_controllers``.
+        """Call one of the manager's services, such as ``list_controllers``, and return the response.
 
         Raises:
             NoManagerError: the manager is not available, or does not answer.
@@ -55,13 +55,17 @@ class ManagerClient:
         return await self._call(f"controller_manager_msgs/srv/{kind}", service, fields)
 
     async def set_parameter(self, name: str, value: Any) -> bool:
-        """Set a parameter of the manager; return whether it accepted the value."""
+        """Set a parameter of the manager, and return whether the value was accepted.
+
+        Raises:
+            NoManagerError: the manager is not available, or does not answer.
+        """
         parameter = Parameter(name, value=value).to_parameter_msg()
         answer = await self._call("rcl_interfaces/srv/SetParameters", "set_parameters", {"parameters": [parameter]})
         return all(result.successful for result in answer.results)
 
     async def switch(self, activate: Sequence[str], deactivate: Sequence[str], timeout: float, *, asap: bool) -> Any:
-        """Switch controllers with strictness STRICT."""
+        """Switch controllers with strictness STRICT, and return the response."""
         duration = get_message("builtin_interfaces/msg/Duration")(*divmod(round(timeout * 1e9), NANOSECONDS_PER_SECOND))
         return await self.ask(
             "switch_controller",
@@ -92,7 +96,11 @@ class ManagerClient:
         raise NoManagerError(f"Could not successfully call service {name} after {_ATTEMPTS} attempts.")
 
     async def _wait_for(self, client: Any, name: str) -> None:
-        """Wait for the server of a client."""
+        """Wait until the server of a client is available.
+
+        Raises:
+            NoManagerError: the timeout has passed.
+        """
         logger = self._node.get_logger()
         while not client.service_is_ready():
             logger.info(f"waiting for service {name} to become available...")
@@ -104,7 +112,7 @@ class ManagerClient:
 
 
 class ManagerProgram(SingleNode):
-    """A node that calls the services of a controller manager and then ends.
+    """A node that calls the services of a controller manager and then exits.
 
     Subclasses create `_node` and call `_begin`.
     """
@@ -112,12 +120,12 @@ class ManagerProgram(SingleNode):
     finished: asyncio.Future[int]
 
     def _begin(self, work: Callable[[], Coroutine[Any, Any, int]]) -> None:
-        """Start a coroutine that returns the exit status."""
+        """Start a coroutine whose result is the exit status of the program."""
         self.finished = asyncio.get_running_loop().create_future()
         self._task = asyncio.get_running_loop().create_task(self._run(work))
 
     def close(self) -> None:
-        """Close the node."""
+        """Cancel the coroutine, and close the node."""
         self._task.cancel()
         super().close()
 
@@ -134,7 +142,7 @@ class ManagerProgram(SingleNode):
 
 
 def _without_empty(parser: argparse.ArgumentParser, words: Sequence[str]) -> list[str]:
-    """Return the words of a command line without the empty ones that launch files leave.
+    """Return command-line arguments without the empty ones that launch files leave.
 
     Empty values of options are kept.
     """
@@ -147,7 +155,7 @@ def _without_empty(parser: argparse.ArgumentParser, words: Sequence[str]) -> lis
 
 
 def parsed(parser: argparse.ArgumentParser, words: Sequence[str]) -> argparse.Namespace:
-    """Parse the options of a command line.
+    """Parse the arguments of a command line.
 
     Raises:
         LinkwrightError: NODE831, the command line cannot be parsed.

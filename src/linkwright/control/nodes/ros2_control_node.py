@@ -1,6 +1,6 @@
 """ros2_control_node of controller_manager, which runs controllers in real time.
 
-It reads, updates and writes at ``update_rate`` on the event loop, so topics and services need no transfer between
+The node reads, updates and writes at ``update_rate`` on the event loop, so topics and services need no transfer between
 threads. Late updates are skipped or made up for, according to ``overruns.manage``. The description is received on the
 topic ``robot_description`` (Jazzy), on ``~/robot_description``, or as a parameter (Humble).
 """
@@ -33,7 +33,7 @@ _SIMULATED = ("GazeboSystem", "GazeboSimSystem", "IgnitionSystem")
 
 
 def _hardware(description: HardwareDescription, logger: Logger) -> Hardware | None:
-    """Create the hardware of a description; return None if there is no driver for it here.
+    """Create the hardware of a description, or return None if its type is not installed.
 
     Raises:
         LinkwrightError: NODE833, the hardware exists only in a simulator.
@@ -50,7 +50,7 @@ def _hardware(description: HardwareDescription, logger: Logger) -> Hardware | No
 
 
 class Ros2ControlNode(SingleNode):
-    """The running node.
+    """The running ros2_control_node.
 
     Raises:
         LinkwrightError: NODE830, the update rate is invalid; or a name, a remapping or a ROS argument is not valid.
@@ -100,7 +100,7 @@ class Ros2ControlNode(SingleNode):
             logger.info(f"Subscribing to '{topic}' topic for robot description.")
 
     def close(self) -> None:
-        """Deactivate the controllers, and close."""
+        """Deactivate the controllers, and close the node."""
         self._manager.close()
         super().close()
 
@@ -128,7 +128,7 @@ class Ros2ControlNode(SingleNode):
     def _load(self, text: str) -> None:
         manager = self._manager
         self._loaded = load_hardware(manager, text, self._library, _hardware) and bool(manager.resources.components)
-        if not self._loaded:  # as upstream, no services either: they would hide those of another manager
+        if not self._loaded:  # Offering services would hide those of another manager.
             return
         node = SteppedNode(self._node, DirectExchange(), owned=False)
         services = ManagerServices(manager, node)
@@ -152,16 +152,16 @@ class Ros2ControlNode(SingleNode):
         clock = self._clock
         timer_ns, simulated = clock.timer_ns(), clock.ros_time_is_active
         period_ns = timer_ns - self._last_ns
-        if simulated is not self._was_simulated or period_ns < 0:  # the time source has changed or the time jumped back
+        if simulated is not self._was_simulated or period_ns < 0:  # The time source or time itself jumped.
             self._was_simulated, period_ns = simulated, self._period_ns
         self._last_ns = timer_ns
         self._manager.cycle(clock.now_ns(), period_ns / NANOSECONDS_PER_SECOND)
         self._took_ns = clock.timer_ns() - timer_ns
 
     def _missed(self, count: int) -> None:
-        """Handle missed updates by skipping them or making up for them.
+        """Skip missed updates if overruns are managed, else make up for them.
 
-        Log updates that took too long.
+        If an update took too long, a warning is logged.
         """
         rate, took_ns = self._manager.update_rate, self._took_ns
         if self._warns_of_overruns and took_ns > self._period_ns:
@@ -171,5 +171,5 @@ class Ros2ControlNode(SingleNode):
                 throttle_duration_sec=1.0,
             )
         if not self._manages_overruns:
-            for _ in range(min(count, int(rate))):  # the missed updates of the last second
+            for _ in range(min(count, int(rate))):  # At most one second of missed updates is made up for.
                 self._cycle()

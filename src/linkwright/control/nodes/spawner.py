@@ -27,7 +27,7 @@ _TAKEN = ("type", "fallback_controllers")
 
 
 class Spawner(ManagerProgram):
-    """The running node, which exits with status 0 when the controllers are active.
+    """The running spawner, which exits with status 0 once the controllers are active.
 
     Raises:
         LinkwrightError: NODE831, the command line cannot be parsed; NODE832, a parameter file does not exist.
@@ -51,7 +51,7 @@ class Spawner(ManagerProgram):
         self._begin(self._spawn)
 
     def close(self) -> None:
-        """Close the node; with ``--unload-on-kill``, unload the controllers."""
+        """Close the node, after unloading the controllers if ``--unload-on-kill`` is given."""
         if self._unloads:
             self._unloads = False
             self._unload_at_once()
@@ -106,7 +106,7 @@ class Spawner(ManagerProgram):
         return True
 
     def _parameters(self, name: str) -> dict[str, Any]:
-        """Return the parameters of a controller that are set on the manager."""
+        """Return the parameters about a controller, such as its type, to be set on the manager."""
         wanted, found = self._arguments, {}
         if wanted.controller_type:
             found["type"] = wanted.controller_type
@@ -125,7 +125,10 @@ class Spawner(ManagerProgram):
         return found
 
     def _unload_at_once(self) -> None:
-        """Deactivate and unload the controllers without waiting for responses, because the program ends."""
+        """Request deactivation and unloading of the controllers, without waiting for responses.
+
+        The program ends meanwhile.
+        """
         names, manager = self._arguments.controller_names, self._client.manager
         kind = get_service("controller_manager_msgs/srv/SwitchController")
         switch = self._node.create_client(kind, f"{manager}/switch_controller")
@@ -137,7 +140,7 @@ class Spawner(ManagerProgram):
 
 
 class Unspawner(ManagerProgram):
-    """The running node, which exits with status 0 when the controllers are unloaded.
+    """The running unspawner, which exits with status 0 once the controllers are unloaded.
 
     Raises:
         LinkwrightError: NODE831, the command line cannot be parsed.

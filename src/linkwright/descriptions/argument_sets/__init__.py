@@ -1,4 +1,4 @@
-"""Search for the values that a workspace gives to a description's arguments.
+"""The search for the values that the files of a workspace pass to a description's arguments.
 
 The values are found in launch files, tests and build files.
 """

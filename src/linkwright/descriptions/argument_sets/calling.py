@@ -40,18 +40,18 @@ _MARK = lazy_pattern("\0([^\0]*)\0")
 
 @dataclass(frozen=True, slots=True)
 class ArgumentSet:
-    """Values that a caller gives to the arguments of a description in one call.
+    """The values that a caller passes to the arguments of a description in one call.
 
     Attributes:
-        values: the values by argument name.
-        open: the arguments whose values are known only when the program runs; an empty name represents arguments whose
-            names are not known either.
-        span: the call that gives the values; None for values of a configuration.
+        values: the values, by argument name.
+        open: the names of the arguments whose values are known only at runtime. An empty name represents arguments
+            whose names are also unknown.
+        span: the location of the call, or None for values of a configuration.
         is_certain: whether the values are known to occur in combination.
-        varied: the arguments whose values differ from those that the same call gives by default.
-        is_mixed: whether a launch argument selects another file than by default, and other arguments also have other
-            values, which may or may not fit this file.
-        is_offered: whether the values are choices offered by launch arguments, while the other arguments have their
+        varied: the names of the arguments whose values differ from those that the same call passes by default.
+        is_mixed: whether a launch argument selects another file than by default, and other arguments also differ from
+            their defaults, so that their values may not fit this file.
+        is_offered: whether the values are choices that launch arguments offer, while the other arguments have their
             defaults.
     """
 
@@ -65,28 +65,28 @@ class ArgumentSet:
 
     @property
     def is_complete(self) -> bool:
-        """Whether the values are certain and all known."""
+        """Whether all values are known and certain to occur in combination."""
         return self.is_certain and not self.open
 
 
 def argument_sets(path: str | Path, finder: PackageFinder | None = None) -> tuple[ArgumentSet, ...]:
-    """Return the sets of values that launch files, tests and build files give to a description's arguments.
+    """Return the sets of values that launch files, tests and build files pass to a description.
 
-    The files are read in the description's package and in neighbouring packages that depend on it, and if these give
-    none, in the other neighbouring packages. Nothing is run.
+    The search covers the files of the description's package and of neighbouring packages that depend on it. If these
+    have no argument sets, it continues in the other neighbouring packages. No file is executed.
 
     Args:
         path: the file of the description.
-        finder: finds packages; by default those around the file.
+        finder: the finder of packages; by default, it finds those around the file.
 
     Returns:
-        The sets without duplicates, the most certain ones first; an empty set for a call without values.
+        The sets without duplicates, the most certain ones first. A call without values has an empty set.
     """
     return ArgumentSets().of(Path(path), finder)
 
 
 class ArgumentSets:
-    """Finds the argument sets for many descriptions; files that call xacro are read once.
+    """The search for the argument sets of many descriptions, which reads each calling file once.
 
     Args:
         folders: packages to search in addition to those near a file.
@@ -102,7 +102,7 @@ class ArgumentSets:
         finder = finder or PackageFinder(start=path.parent)
         near = list(self._files.around(path, self._folders))
         sets = list(_Target(path, finder, near).sets())
-        if not sets:  # A launch file may use a package that its own package does not declare as a dependency.
+        if not sets:  # A launch file may use a package that is not a declared dependency.
             sets = list(_Target(path, finder, [*near, *self._files.elsewhere(path, self._folders)]).sets())
         found: dict[object, ArgumentSet] = {}
         for argument_set in sets:
@@ -123,7 +123,7 @@ class ArgumentSets:
 
 @dataclass(eq=False)
 class _Target:
-    """A description, and the files that may expand it, each with the name of its package."""
+    """A description, and the files that may expand it, each with the name of the file's package."""
 
     path: Path
     finder: PackageFinder
@@ -186,7 +186,7 @@ class _Target:
         return re.fullmatch(expression, self.path.as_posix()) is not None
 
     def _is_target(self, written: str, file: CallingFile) -> bool:
-        """Return whether a path without unknown parts is the description's."""
+        """Return whether a path without unknown parts is the path of the description."""
         package, rest = split_mark(written)
         if _MARK.search(rest):
             return False  # A share folder in the middle of a path is not supported.
@@ -202,7 +202,10 @@ class _Target:
         return os.path.realpath(path) == os.path.realpath(self.path)
 
     def _with_folders(self, value: str) -> str | None:
-        """Return a value with share folders inserted; None if a package is not found."""
+        """Return a value in which share folders replace the marks of packages.
+
+        The result is None if a package is not found.
+        """
         for package in _MARK.findall(value):
             share = self.finder.find(package)
             if share is None:
@@ -213,10 +216,10 @@ class _Target:
     # --- launch arguments -----------------------------------------------------------------------------------
 
     def _launches(self, package: str | None, file: CallingFile, depth: int = 0) -> list[dict[str, str]]:
-        """Return the launch arguments with which a file is launched, directly and by each file that includes it.
+        """Return the launch arguments with which a file is launched, directly or by including files.
 
         Returns:
-            The given values, by the names of their choices.
+            For each way to launch the file, the given values by the names of their choices.
         """
         found: list[dict[str, str]] = [{}]
         if depth >= _DEEPEST:
@@ -239,9 +242,10 @@ class _Target:
 
     @cached_property
     def _inclusions(self) -> dict[str, list[tuple[str | None, str | None, CallingFile, Inclusion]]]:
-        """The inclusions by the name of the included file.
+        """The inclusions of launch files, by the name of the included file.
 
-        Each is given as the package in the path, the including package, the including file, and the inclusion.
+        An inclusion is a tuple of the package in the path, the including package, the including file, and the inclusion
+        itself.
         """
         found: dict[str, list[tuple[str | None, str | None, CallingFile, Inclusion]]] = {}
         for package, file in self.files:
@@ -251,14 +255,15 @@ class _Target:
 
 
 def _is_open(path: Text) -> bool:
-    """Return whether a path has a part for which unknown texts are possible."""
+    """Return whether a path has a part that is not known before runtime."""
     return any(_is_open(piece.package) if isinstance(piece, Share) else isinstance(piece, Open) for piece in path)
 
 
 def _varied(call: XacroCall, one: ArgumentSet, other: ArgumentSet) -> tuple[str, ...]:
-    """Return the arguments that differ between two sets.
+    """Return the names of the arguments that differ between two sets.
 
-    If some of them are plain choices, texts composed of choices, such as paths, are left out.
+    If some of these arguments are plain choices, the result is limited to them. Texts composed of choices, such as
+    paths, are then left out.
     """
     names = tuple(name for name, value in one.values.items() if other.values.get(name) != value)
     return tuple(name for name in names if len(call.arguments.get(name, ())) == 1) or names
@@ -270,8 +275,8 @@ def _unquoted(value: str) -> str:
 
 
 def _words(line: str) -> list[str]:
-    """Return the words of a part of a command line, without quotes."""
-    import shlex  # Imported here because quotes are rare.
+    """Return the words of a part of a command line, without their quotes."""
+    import shlex  # imported here because quotes are rare
 
     try:
         return shlex.split(line)

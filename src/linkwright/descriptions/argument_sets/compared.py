@@ -1,4 +1,4 @@
-"""The argument values with which the conditions of a description compare its arguments."""
+"""The values with which the conditions of a description compare its arguments."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ _CONDITIONS = frozenset({"xacro:if", "xacro:unless"})
 
 
 def compared_values(documents: Iterable[Document]) -> tuple[ArgumentSet, ...]:
-    """Return the values with which conditions compare arguments, each as a set that may not occur.
+    """Return each value with which a condition compares an argument, as an uncertain set.
 
-    An argument is also recognised by the names of properties that contain it: ``<xacro:property name="side"
-    value="$(arg side)"/>``. Macro parameters are not followed.
+    An argument is also recognised through a property that contains it, as in ``<xacro:property name="side" value="$(arg
+    side)"/>``. Macro parameters are not followed.
 
     Args:
-        documents: the files of a description, as written.
+        documents: the unexpanded files of a description.
     """
     elements = [element for document in documents for element in document.root.walk()]
     names = dict(_names(elements))
@@ -39,14 +39,20 @@ def compared_values(documents: Iterable[Document]) -> tuple[ArgumentSet, ...]:
 
 
 def empty_defaults(documents: Iterable[Document]) -> tuple[str, ...]:
-    """Return the arguments whose default is an empty text, which often means that callers must give a value."""
+    """Return the names of the arguments with an empty default.
+
+    An empty default often means that callers must pass a value.
+    """
     elements = (element for document in documents for element in document.root.walk())
     declared = (element.attributes for element in elements if element.tag == "xacro:arg")
     return tuple(dict.fromkeys(item["name"] for item in declared if "name" in item and item.get("default") == ""))
 
 
 def _names(elements: Iterable[Element]) -> Iterator[tuple[str, str]]:
-    """Yield the name of each argument, and of each property that contains it, with the argument's name."""
+    """Yield the name of each argument, and of each property that contains an argument.
+
+    Each name is paired with the name of the argument.
+    """
     for element in elements:
         name = element.attributes.get("name", "")
         if element.tag == "xacro:arg":
@@ -58,7 +64,7 @@ def _names(elements: Iterable[Element]) -> Iterator[tuple[str, str]]:
 
 
 def _comparisons(condition: str) -> Iterator[tuple[str, str]]:
-    """Yield the operands of ``==`` and ``in``, each with a text that it is compared with."""
+    """Yield each operand of ``==`` and ``in`` with a text with which it is compared."""
     for *operands, one, several in _COMPARISON.findall(condition):
         operand = next(filter(None, operands))
         for found in _TEXT.findall(one or several):

@@ -1,4 +1,4 @@
-"""The files of packages that may call xacro, with a cache of the parsed files."""
+"""The files in packages that may call xacro, with a cache of the parsed files."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _WORDS = ("xacro", "MoveItConfigsBuilder", "IncludeLaunchDescription", "<include
 
 
 class CallingFiles:
-    """The files of packages that call xacro."""
+    """A cache of the files in packages that call xacro."""
 
     def __init__(self) -> None:
         self._read: dict[Path, tuple[CallingFile, ...]] = {}
@@ -33,10 +33,12 @@ class CallingFiles:
         self._manifests: dict[Path, str] = {}
 
     def around(self, path: Path, folders: tuple[Path, ...]) -> Iterator[tuple[str | None, CallingFile]]:
-        """Yield the calling files of a file's package and of the packages that depend on it, with the package's name.
+        """Yield the calling files of a file's package and of packages that depend on it.
+
+        Each file is paired with the name of its package, or None.
 
         Args:
-            path: the file, absolute.
+            path: the absolute path of the file.
             folders: packages to search in addition to those nearby.
         """
         own = enclosing_package(path.parent)
@@ -48,10 +50,12 @@ class CallingFiles:
         yield from self._of_others(name, folder, folders, using=True)
 
     def elsewhere(self, path: Path, folders: tuple[Path, ...]) -> Iterator[tuple[str | None, CallingFile]]:
-        """Yield the calling files of the packages that do not depend on a file's package.
+        """Yield the calling files of packages that do not depend on a file's package.
+
+        Each file is paired with the name of its package.
 
         Args:
-            path: the file, absolute.
+            path: the absolute path of the file.
             folders: packages to search in addition to those nearby.
         """
         own = enclosing_package(path.parent)
@@ -61,16 +65,16 @@ class CallingFiles:
     def _of_others(
         self, name: str, folder: Path, folders: tuple[Path, ...], *, using: bool
     ) -> Iterator[tuple[str, CallingFile]]:
-        """Yield the calling files of the other packages that depend on a package.
+        """Yield the calling files of other packages, with the names of their packages.
 
-        Unless `using`, yield those of the packages that do not.
+        With `using`, these are the packages that depend on the package `name`, otherwise those that do not.
         """
         for other, place in self._near(folder, folders).items():
             if other != name and (name in self._manifest(place)) is using:
                 yield from ((other, file) for file in self.of(place))
 
     def of(self, folder: Path) -> tuple[CallingFile, ...]:
-        """Return the calling files in and below a folder, without those of other packages."""
+        """Return the calling files in and below a folder, except those of nested packages."""
         if folder not in self._read:
             read = (_read(path, folder) for path in _files(folder))
             self._read[folder] = tuple(
@@ -81,14 +85,14 @@ class CallingFiles:
         return self._read[folder]
 
     def _near(self, folder: Path, folders: tuple[Path, ...]) -> dict[str, Path]:
-        """Return the packages of the workspace and of additional folders: name -> folder."""
+        """Return the folders of the packages in the workspace and in additional folders, by name."""
         return {
             **self._beside(folder),
             **{found[0]: folder for folder in folders if (found := enclosing_package(folder))},
         }
 
     def _beside(self, folder: Path) -> dict[str, Path]:
-        """Return the packages of the workspace that are next to a package or below the same ``src``."""
+        """Return the folders of packages next to a package or below the same ``src``, by name."""
         above = next((parent for parent in folder.parents if parent.name == "src"), folder.parent)
         if above not in self._packages:
             self._packages[above] = SourceScan(above).packages()

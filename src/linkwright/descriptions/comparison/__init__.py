@@ -1,6 +1,6 @@
-"""Comparison of robot descriptions.
+"""The comparison of robot descriptions.
 
-The changes of links, joints, origins and masses are given with their places in both.
+Changes of links, joints, origins, masses and other parts are reported with their locations in both descriptions.
 """
 
 from linkwright.descriptions.comparison.compare import Comparison, Difference, Kind, Place, Side, Subject, compare

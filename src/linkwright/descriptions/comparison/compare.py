@@ -34,7 +34,10 @@ _Part = TypeVar("_Part", Link, Joint)
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """The place of a difference, and the macro calls and includes that led to it, innermost first."""
+    """The location of a difference.
+
+    `calls` are the macro calls and includes that led there, innermost first.
+    """
 
     span: Span
     calls: tuple[Span, ...] = ()
@@ -47,14 +50,14 @@ class Difference:
     Attributes:
         subject: the kind of the changed object; ``extension`` is a ``<gazebo>``, ``<ros2_control>``,
             ``<transmission>``, ...
-        name: the object's name in the new description; if it was removed, in the old one.
+        name: the object's name in the new description or, for a removed object, in the old one.
         kind: the kind of change.
         property: the changed property, such as ``mass`` or ``visual 2 origin xyz``; empty for the whole object.
-        old: the value in the old description, without the unit; None if it has none.
-        new: the value in the new description, likewise.
-        unit: the unit of both; empty for words.
-        old_place: the place of the value in the old description, or the beginning of its object.
-        new_place: the place in the new description, likewise.
+        old: the value in the old description without its unit, or None if there is none.
+        new: the value in the new description without its unit, or None if there is none.
+        unit: the unit of both values; empty for text.
+        old_place: the location of the value in the old description, or of the beginning of its object.
+        new_place: the location of the value in the new description, or of the beginning of its object.
     """
 
     subject: Subject
@@ -73,10 +76,11 @@ class Comparison:
     """The differences between two descriptions.
 
     Attributes:
-        differences: the robot's own, then those of links and joints in the order of the new description, followed by
-            removed ones, then those of everything that other programs read.
-        links: name in the old description -> name in the new one, for links in both.
-        joints: the same for joints.
+        differences: first the differences of the robot itself, then those of links and joints in the order of the new
+            description, then removed links and joints, and finally the differences of the elements that other programs
+            read.
+        links: the name in the new description of each matched link, by its name in the old description.
+        joints: the name in the new description of each matched joint, by its name in the old description.
     """
 
     differences: tuple[Difference, ...]
@@ -90,8 +94,9 @@ class Side:
 
     Attributes:
         robot: the robot of the description.
-        normalize: makes words comparable, such as paths in a folder that replaces another.
-        resolve: returns the file of a mesh's address; if set, the bytes of meshes are compared, too.
+        normalize: a function that makes texts comparable, such as paths in a folder that replaces another folder.
+        resolve: a function that returns the file of a mesh's URI, or None. With such a function, the contents of mesh
+            files are compared, too.
     """
 
     robot: Robot
@@ -99,7 +104,7 @@ class Side:
     resolve: Callable[[str], Path] | None = None
 
     def mesh(self, address: str) -> Path | None:
-        """Return the file of a mesh; None if it is unknown or does not exist."""
+        """Return the file of a mesh's URI, or None if it is unknown or does not exist."""
         if self.resolve is None:
             return None
         try:
@@ -112,8 +117,8 @@ class Side:
 def compare(old: Side, new: Side) -> Comparison:
     """Return the differences between two descriptions.
 
-    Links and joints are matched by name, and recognised under a new name if everything else is equal. Poses are
-    compared as poses, not as text; the tolerances are in `linkwright.descriptions.comparison.facts`. Elements outside
+    Links and joints are matched by name. An object with a new name is recognised if everything else is equal. Poses are
+    compared as poses, not as text, with the tolerances in `linkwright.descriptions.comparison.facts`. Elements outside
     the robot model (``<gazebo>``, ``<ros2_control>``, sensors) are compared as XML, ignoring blanks, comments and the
     order of attributes.
     """
@@ -132,7 +137,7 @@ class _Comparer:
         found = [*self._robot(), *self._links(), *self._joints(), *self._extensions()]
         return Comparison(tuple(found), self.matches.links, self.matches.joints)
 
-    # --- which is which -----------------------------------------------------------------------------------------
+    # --- matching ------------------------------------------------------------------------------------------------
 
     def _same(self, old: Block, new: Block) -> bool:
         return old.equals(new, self.old.normalize, self.new.normalize)
@@ -163,7 +168,7 @@ class _Comparer:
         yield from _named("joint", old, new, self.matches.joints, inside)
 
     def _follows_a_name(self, difference: Difference) -> bool:
-        """Return whether a reference differs only because the referenced link or joint was renamed."""
+        """Return whether a value differs only because the link or joint that it names was renamed."""
         if difference.property in ("parent", "child"):
             return self.matches.links.get(difference.old or "") == difference.new
         return difference.property == "mimic joint" and self.matches.joints.get(difference.old or "") == difference.new
@@ -192,7 +197,7 @@ class _Comparer:
             yield from self._block("link", link, name, first, second, around)
 
     def _meshes(self, old: Link, new: Link) -> Iterator[Difference]:
-        """Yield the meshes with the same address whose files differ."""
+        """Yield the differences of mesh files that have the same URI but different contents."""
         for tag, before, after in (("visual", old.visuals, new.visuals), ("collision", old.collisions, new.collisions)):
             known, wanted = _meshes_of(before), _meshes_of(after)
             for name in (name for name in wanted if name in known):
@@ -225,7 +230,7 @@ class _Comparer:
                 continue
             yield _changed(subject, name, f"{block} {fact}".strip(), (before, old), (after, new))
 
-    # --- what other programs read -----------------------------------------------------------------------------------
+    # --- extensions ------------------------------------------------------------------------------------------------
 
     def _extensions(self) -> Iterator[Difference]:
         yield from self._elements(self.old.robot.extensions, self.new.robot.extensions, "", None)
@@ -237,13 +242,13 @@ class _Comparer:
         path: str,
         around: tuple[str, Element, Element] | None,
     ) -> Iterator[Difference]:
-        """Yield the differences of elements, directly in a robot or inside a pair of elements.
+        """Yield the differences between the elements of two robots, or of a pair of elements.
 
         Args:
             old: the elements of the old description.
             new: the elements of the new description.
             path: the names of the enclosing elements.
-            around: the name of the enclosing pair and the pair; None for elements of the robot.
+            around: the name of the enclosing pair and the pair itself, or None for direct children of the robots.
         """
         before, after = _keyed(old), _keyed(new)
         for key in dict.fromkeys([*after, *before]):
@@ -280,9 +285,9 @@ class _Comparer:
 
 
 def _keyed(elements: Sequence[Element]) -> dict[str, Element]:
-    """Return elements by tag and by name or reference, in order.
+    """Return elements in document order, by tag and name or reference.
 
-    Elements of the same kind are numbered.
+    The keys of elements with the same tag and name are numbered.
     """
     found: dict[str, Element] = {}
     for element in elements:
@@ -298,7 +303,7 @@ def _keyed(elements: Sequence[Element]) -> dict[str, Element]:
 
 
 def _flat(element: Element) -> str:
-    """Format an element's attributes and text in one line."""
+    """Return an element's attributes, text and child tags as one line."""
     words = [f"{name}={value}" for name, value in element.attributes.items()]
     words += element.text().split()
     words += [f"<{child.tag}>" for child in element.elements()]
@@ -312,7 +317,7 @@ def _named(
     matched: Mapping[str, str],
     inside: Callable[[_Part, _Part], Iterator[Difference]],
 ) -> Iterator[Difference]:
-    """Yield added, renamed, changed and removed links or joints."""
+    """Yield the differences of links or joints: added, renamed, changed and removed ones."""
     names = {after: before for before, after in matched.items()}
     for name, part in new.items():
         if name not in names:
@@ -342,7 +347,7 @@ def _changed(
 
 
 def _place(element: Element | None, attribute: str = "") -> Place | None:
-    """Return where an element, or one of its attributes, is written."""
+    """Return the location of an element or of one of its attributes, or None if unknown."""
     if element is None:
         return None
     span = element.attribute_span(attribute) if attribute in element.attributes else element.span()
@@ -353,7 +358,7 @@ def _place(element: Element | None, attribute: str = "") -> Place | None:
 
 
 def _meshes_of(shapes: Sequence[Visual | Collision]) -> dict[str, Element | None]:
-    """Return the addresses of meshes, and the elements in which they are written."""
+    """Return the elements in which meshes are written, by the URI of the mesh."""
     return {
         shape.geometry.filename: nearest(shape.element, "geometry", "mesh")
         for shape in shapes
@@ -362,9 +367,9 @@ def _meshes_of(shapes: Sequence[Visual | Collision]) -> dict[str, Element | None
 
 
 def _difference_of_bytes(old: Path, new: Path) -> tuple[str, str, str]:
-    """Return the difference between two files' bytes, and its unit.
+    """Return the old value, the new value and the unit of the difference between two files.
 
-    The files differ in size or, if the sizes are equal, in the beginnings of their hashes.
+    The values are the sizes or, if these are equal, the beginnings of the hashes.
     """
     sizes = [path.stat().st_size for path in (old, new)]
     if sizes[0] != sizes[1]:

@@ -1,4 +1,4 @@
-"""The compared properties of links and joints, each with the place where it is written."""
+"""The compared properties of links and joints, each with its location."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ class Fact:
     """A property of a link or joint.
 
     Attributes:
-        words: its words, such as a name or the kind of a shape; empty for numbers alone.
-        numbers: its numbers, in SI units.
+        words: the text of the property, such as a name or the kind of a shape; empty for numbers alone.
+        numbers: the numbers of the property, in SI units.
         unit: the unit of the numbers.
         rotation: the quaternion (x, y, z, w) of the numbers, if they are roll, pitch and yaw.
         direction: whether the numbers are an axis, whose length does not matter.
-        element: the element that has the property or, for a default, the nearest enclosing element.
-        attribute: the attribute of the element.
+        element: the element with the property or, for a default, the nearest enclosing element.
+        attribute: the name of the element's attribute with the property.
     """
 
     words: str
@@ -45,12 +45,12 @@ class Fact:
     direction: bool = False
 
     def equals(self, other: Fact, here: Normalize, there: Normalize) -> bool:
-        """Return whether the property is equal in two descriptions, within the tolerances.
+        """Return whether a property is equal in two descriptions, within the tolerances.
 
         Args:
             other: the property of the other description.
-            here: makes the words of this description comparable.
-            there: makes the words of the other description comparable.
+            here: the function that makes texts of this description comparable.
+            there: the function that makes texts of the other description comparable.
         """
         if here(self.words) != there(other.words) or len(self.numbers) != len(other.numbers):
             return False
@@ -68,19 +68,19 @@ class Fact:
 
     @property
     def text(self) -> str:
-        """The words and numbers, without the unit."""
+        """The text and the numbers of the property, without the unit."""
         return " ".join(filter(None, (self.words, *(f"{number:.9g}" for number in self.numbers))))
 
 
 @dataclass(slots=True)
 class Block:
-    """Facts that are added or removed as a unit: an ``<inertial>``, a ``<limit>``, a ``<visual>``.
+    """Properties that are added or removed together, such as those of an ``<inertial>``.
 
     Attributes:
-        name: the tag; empty for facts that every joint has.
-        element: the element in which the facts are written.
-        facts: the facts by property.
-        label: the name that the description gives to the block.
+        name: the tag; empty for the properties that every joint has.
+        element: the element that contains the properties.
+        facts: the facts, by the name of the property.
+        label: the name of the block in the description.
     """
 
     name: str
@@ -100,17 +100,17 @@ class Block:
         )
 
     def number(self, name: str, value: float | None, unit: str, element: Element | None, attribute: str) -> None:
-        """Add a number; None adds nothing."""
+        """Add a property with one number; None is ignored."""
         if value is not None:
             self.facts[name] = Fact("", (value,), unit, element, attribute)
 
     def words(self, name: str, value: str, element: Element | None, attribute: str) -> None:
-        """Add words; empty ones add nothing."""
+        """Add a property with a text; an empty text is ignored."""
         if value:
             self.facts[name] = Fact(value, (), "", element, attribute)
 
     def origin(self, pose: Pose, around: Element | None) -> None:
-        """Add the pose of a frame relative to its parent frame."""
+        """Add the position and rotation of a frame relative to its parent frame."""
         element = nearest(around, "origin")
         attribute = "rpy" if pose.quaternion is None else "quat_xyzw"
         self.facts["origin xyz"] = Fact("", pose.xyz, "m", element, "xyz")
@@ -118,7 +118,7 @@ class Block:
 
 
 def nearest(element: Element | None, *tags: str) -> Element | None:
-    """Return the descendant that the tags lead to, or the last existing element on the way."""
+    """Return the descendant at the end of a path of tags, or the last one that exists."""
     for tag in tags:
         inner = None if element is None else element.first(tag)
         if inner is None:
@@ -143,7 +143,7 @@ def collisions_of(link: Link) -> list[Block]:
 
 
 def blocks_of_joint(joint: Joint) -> list[Block]:
-    """Return the properties of a joint, one block for each element that contains some."""
+    """Return the properties of a joint, one block for each element with properties."""
     element = joint.element
     own = Block("", element)
     own.words("type", joint.type, element, "type")
@@ -225,10 +225,10 @@ def _geometry(geometry: Geometry, around: Element | None) -> Fact:
 def pairs_of(
     old: Sequence[Block], new: Sequence[Block], same: Callable[[Block, Block], bool]
 ) -> list[tuple[int | None, int | None]]:
-    """Match visuals, or collisions: first equal ones, then those with the same name, then by order.
+    """Match visuals or collisions: first equal ones, then by name, then by order.
 
     Returns:
-        Pairs of positions in `old` and in `new`; None for an entry without a match.
+        Pairs of an index in `old` and an index in `new`. An entry without a match is paired with None.
     """
     left, right = list(range(len(old))), list(range(len(new)))
     found: list[tuple[int | None, int | None]] = []

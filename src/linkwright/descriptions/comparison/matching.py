@@ -1,4 +1,7 @@
-"""Matching the links and joints of two descriptions: by name, or as renamed if everything else is equal."""
+"""The matching of the links and joints of two descriptions.
+
+They match by name, or as renamed if everything else is equal.
+"""
 
 from __future__ import annotations
 
@@ -11,11 +14,11 @@ from linkwright.urdf import Joint, Link, Robot, children_of
 
 @dataclass(frozen=True, slots=True)
 class Matches:
-    """Names in the old description -> names in the new one, equal or renamed.
+    """The names in the new description that match names in the old one, equal or renamed.
 
     Attributes:
-        links: the names of links.
-        joints: the names of joints.
+        links: the new names of links, by old name.
+        joints: the new names of joints, by old name.
     """
 
     links: Mapping[str, str]
@@ -28,21 +31,22 @@ def match(
     """Match the links and joints of two robots, from the root down.
 
     Links or joints with the same name match. A joint that is only in the old robot was renamed if a joint that is only
-    in the new robot has the same parent, an equal child and equal properties. A link was renamed if an equal link has
-    the same parent joint.
+    in the new robot has the same parent, an equal child and equal properties. A link was renamed if an equal link
+    has the same parent joint.
 
     Args:
         old: the old robot.
         new: the new robot.
-        same_link: returns whether two links are equal except for their names.
-        same_joint: returns whether two joints are equal except for their names and those of their links.
+        same_link: a function that returns whether two links are equal except for their names.
+        same_joint: a function that returns whether two joints are equal except for their names and those of their
+            links.
     """
     links = {name: name for name in old.links if name in new.links}
     joints = {name: name for name in old.joints if name in new.joints}
     taken = set(joints)
 
     def renamed(before: str, after: str) -> bool:
-        """Return whether two links match; a renamed link is recorded as matched."""
+        """Return whether two links match, and record a renamed link as matched."""
         if links.get(before) == after:
             return True
         if before in new.links or after in old.links or before in links or after in links.values():

@@ -1,4 +1,4 @@
-"""A comparison formatted as text for users and as data for programs."""
+"""The formatting of a comparison as text for users and as data for programs."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ Label = Callable[[str], str]
 
 
 def as_text(comparison: Comparison, label: Label) -> str:
-    """Format each difference as a line, with both places below it, in the user's language.
+    """Return a line for each difference, followed by its locations, in the user's language.
 
     Args:
         comparison: the differences.
-        label: returns the name of a file for users.
+        label: a function that returns the name of a file for users.
     """
     found = comparison.differences
     if not found:
@@ -32,7 +32,7 @@ def as_text(comparison: Comparison, label: Label) -> str:
 
 
 def sentence(difference: Difference) -> Phrase:
-    """Describe a change in one line."""
+    """Return a description of a change in one line."""
     subject, name = term(difference.subject), difference.name
     if difference.kind == "added":
         return phrase("{subject} '{name}' added", subject=subject, name=name)
@@ -51,7 +51,10 @@ def sentence(difference: Difference) -> Phrase:
 
 
 def as_data(comparison: Comparison, label: Label) -> list[dict[str, Any]]:
-    """Return the differences as JSON-ready data; places are 1-based, missing ones are None."""
+    """Return the differences as JSON-ready data.
+
+    Lines and columns start at 1, and are None if there is no location.
+    """
     return [
         {
             "subject": difference.subject,
@@ -79,7 +82,7 @@ def _span_data(span: Span, label: Label) -> dict[str, Any]:
 
 
 def _where(place: Place, label: Label) -> str:
-    """Format a place with the call or include that led to it.
+    """Return a location as text, with the innermost call or include that led there.
 
     Outer calls are only in the data for programs.
     """

@@ -1,4 +1,4 @@
-"""The sources of named values in a description: properties, arguments, macro parameters and YAML files."""
+"""The definitions of named values: properties, arguments, macro parameters and YAML files."""
 
 from __future__ import annotations
 
@@ -23,10 +23,12 @@ _MOST_YAML = 1_000_000
 
 
 class Definitions:
-    """The texts that define names; if several define a name, the caller tries each of them.
+    """The texts that define names in a description.
+
+    If several texts define the same name, the caller must try each of them.
 
     Args:
-        documents: the XML files from which a description was made, as written.
+        documents: the unexpanded XML files of the description.
         others: the other files, such as YAML files.
         overlay: texts that replace those of files.
     """
@@ -41,7 +43,7 @@ class Definitions:
                 self._collect(element)
 
     def of_names(self, text: str, innermost: Frame | None) -> Iterator[Place]:
-        """Yield the texts that may define the names in a text, those of the enclosing calls first.
+        """Yield the texts that may define the names in a text, those of enclosing calls first.
 
         Args:
             text: a text that contains expressions.
@@ -59,11 +61,11 @@ class Definitions:
                 yield from (place for path, place in self._values() if path[-len(keys) :] == keys)
 
     def given(self, text: str, index: int | None, innermost: Frame | None) -> Iterator[Candidate]:
-        """Yield arguments that could be added to calls which rely on a parameter's default in a text.
+        """Yield arguments that could be added to calls that use a parameter's default.
 
         Args:
             text: a text that contains expressions.
-            index: which of the parameter's three numbers is meant, if it has three.
+            index: the index of the number to change, if the parameter has three numbers.
             innermost: the macro call in which the text is evaluated.
         """
         for reference in references(text):
@@ -86,9 +88,9 @@ class Definitions:
                 self._named.setdefault(name, []).append(place)
 
     def _default(self, frame: Frame, name: str) -> Place | None:
-        """Return the default of a macro's parameter.
+        """Return the location of the default of a macro's parameter.
 
-        Returns None if there is no default or no such parameter.
+        The result is None if the parameter or its default does not exist.
         """
         macro = self._macros.get((frame.macro or "").rpartition(".")[2])
         params = None if macro is None else attribute(macro, "params")
@@ -107,14 +109,14 @@ class Definitions:
         return params.part(found.default_start + quoted, found.default_start + len(found.default) - quoted)
 
     def _values(self) -> list[tuple[tuple[str, ...], Place]]:
-        """Return the scalars of the YAML files, each with the keys that lead to it."""
+        """Return the locations of all scalars in the YAML files, each with the keys that lead there."""
         if self._scalars is None:
             self._scalars = [item for path in self._others for item in _scalars_of(path, self._overlay)]
         return self._scalars
 
 
 def attribute(element: Element, name: str) -> Place | None:
-    """Return where the value of an element's attribute is written in a file."""
+    """Return the location of an attribute's value, or None if it is not in a file."""
     if element.source is None:
         return None
     found = attribute_value_range(element.source.text, element.offset, name)
@@ -139,7 +141,10 @@ def _given(site: Element, name: str, default: list[Place], index: int | None) ->
 
 
 def _keys(path: str) -> tuple[str, ...]:
-    """Return the constant keys of an expression, such as ``("wheel", "radius")`` of ``config['wheel'].radius``."""
+    """Return the constant keys in an expression.
+
+    For ``config['wheel'].radius`` these are ``("wheel", "radius")``.
+    """
     keys: list[str] = []
     try:
         node: ast.AST = ast.parse(path, mode="eval").body
@@ -172,7 +177,7 @@ def _walk(node: Any, keys: tuple[str, ...], source: SourceText, depth: int) -> I
         quoted = node.style in ("'", '"')
         if keys and (quoted or node.style is None):
             end = node.end_mark.index - quoted
-            yield keys, Place(source, end - len(node.value), end)  # A tag may precede the value.
+            yield keys, Place(source, end - len(node.value), end)  # a tag may precede the value
     elif depth < 50 and isinstance(node, yaml.MappingNode):
         for key, value in node.value:
             if isinstance(key, yaml.ScalarNode):

@@ -1,4 +1,4 @@
-"""Comparison of two expansions of one description."""
+"""The comparison of two expansions of one description."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from linkwright.xmltree import Element
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """An attribute of an expanded document that is edited.
+    """The attribute of an expanded document that is edited.
 
     Attributes:
         path: the path from the root to the joint, visual or collision: the index of the child at each level.
-        tag: the tag of the element in it: ``origin`` or ``axis``.
+        tag: the tag of the child with the attribute, ``origin`` or ``axis``.
         attribute: the name of the attribute.
     """
 
@@ -25,20 +25,20 @@ class Target:
     attribute: str
 
     def owner(self, root: Element) -> Element | None:
-        """Return the joint, visual or collision in a document; None if it no longer exists."""
+        """Return the joint, visual or collision in a document, or None if it no longer exists."""
         element: Element | None = root
         for index in self.path:
             element = next(islice(element.elements(), index, None), None) if element is not None else None
         return element
 
     def element(self, root: Element) -> Element | None:
-        """Return the element with the attribute."""
+        """Return the element with the attribute in a document, or None if it does not exist."""
         owner = self.owner(root)
         return None if owner is None else owner.first(self.tag)
 
 
 def path_to(root: Element, element: Element) -> tuple[int, ...] | None:
-    """Return the path of an element in a document; None if the document does not contain it."""
+    """Return the path of an element in a document, or None if the document does not contain it."""
     pending: list[tuple[Element, tuple[int, ...]]] = [(root, ())]
     while pending:
         found, path = pending.pop()
@@ -49,15 +49,16 @@ def path_to(root: Element, element: Element) -> tuple[int, ...] | None:
 
 
 def other_differences(before: Element, after: Element, target: Target) -> Iterator[tuple[Element, ...]]:
-    """Yield the differences other than the edited attribute.
+    """Yield the differences other than that of the edited attribute.
 
     Args:
-        before: the root of a document.
-        after: the root of the other document.
-        target: the attribute that may differ, and may be new with its element.
+        before: the root of the first document.
+        after: the root of the second document.
+        target: the attribute that may differ, and may be new, also with its element.
 
     Yields:
-        The elements of the first document from below its root down to one that differs; empty for the root.
+        The elements of the first document on the path from its root (exclusive) to an element that differs; empty if
+        the root differs.
     """
     pending: list[tuple[Element, Element, tuple[Element, ...], tuple[int, ...]]] = [(before, after, (), ())]
     while pending:
@@ -78,7 +79,7 @@ def other_differences(before: Element, after: Element, target: Target) -> Iterat
 
 
 def described(trail: tuple[Element, ...]) -> str:
-    """Describe the element of a trail, such as ``joint 'wheel_joint'``."""
+    """Return a text that names the element of a path, such as ``joint 'wheel_joint'``."""
     named = [element for element in trail if element.attributes.get("name") or element.attributes.get("reference")]
     if not trail:
         return term("robot")
@@ -91,12 +92,15 @@ def described(trail: tuple[Element, ...]) -> str:
 
 
 def _place(old: Element, child: Element, index: int, is_owner: bool) -> int:
-    """Return the index of a child among its siblings; in the owner, `index` does not count the removed one."""
+    """Return the index of a child among its siblings.
+
+    In the owner, `index` does not count the removed element, so the child is searched.
+    """
     return next(i for i, each in enumerate(old.elements()) if each is child) if is_owner else index
 
 
 def _taken(elements: list[Element], tag: str) -> Element | None:
-    """Remove and return the first element with a tag."""
+    """Remove and return the first element with a tag, or return None if there is none."""
     found = next((element for element in elements if element.tag == tag), None)
     if found is not None:
         elements.remove(found)

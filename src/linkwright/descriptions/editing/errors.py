@@ -6,10 +6,10 @@ from linkwright.diagnostics import Diagnostic
 
 
 class EditRefusedError(Exception):
-    """Raised when an edit of a description is refused; nothing was written.
+    """Raised when an edit of a description is refused; no file was written.
 
     Attributes:
-        diagnostic: which text is refused, where, why, and what to do.
+        diagnostic: the finding with the refused text, its location, the reason, and a hint.
     """
 
     def __init__(self, diagnostic: Diagnostic) -> None:

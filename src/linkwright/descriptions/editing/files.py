@@ -1,4 +1,4 @@
-"""Files of edited robots: permission to write, writing, and undo."""
+"""The files of edited robots: write permission, writing, and undo."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ _MOST_STEPS = 200
 
 
 class Workspace:
-    """The files that edits of a description may write: the files of its workspace that are not installed.
+    """The files that edits may write: files of the workspace that are not installed.
 
-    The workspace is the largest of these folders around the main file: the folder of its package, of its git
-    repository, and the folder whose ``src`` contains it.
+    The workspace is the largest of three folders that contain the main file: the folder of its package, the folder of
+    its git repository, and the folder whose ``src`` contains the file.
 
     Args:
         main: the file that was opened.
@@ -36,7 +36,7 @@ class Workspace:
         self.folder = _workspace_of(real)
 
     def refusal(self, path: str) -> Diagnostic | None:
-        """Return why a file may not be written (EDIT106); None if it may.
+        """Return the reason why a file must not be written (EDIT106), or None if it may be written.
 
         Args:
             path: the real path of the file.
@@ -56,13 +56,13 @@ class Workspace:
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """An applied edit: real path of a file -> its bytes before and after."""
+    """An applied edit: the bytes of each file before and after, by real path."""
 
     files: Mapping[str, tuple[bytes, bytes]]
 
 
 class EditHistory:
-    """The history of written edits; the last one can be undone."""
+    """The history of written edits, with undo and redo."""
 
     def __init__(self) -> None:
         self._done: list[Step] = []
@@ -79,13 +79,14 @@ class EditHistory:
         return bool(self._undone)
 
     def apply(self, plan: EditPlan) -> list[str]:
-        """Write an edit to its files, either all of them or none.
+        """Write the files of an edit, either all of them or none.
 
         Returns:
-            The files that were written.
+            The paths of the written files.
 
         Raises:
-            EditRefusedError: EDIT107, a file has changed since; EDIT108, a file cannot be written.
+            EditRefusedError: EDIT107 if a file has changed since the edit was planned, or EDIT108 if a file cannot be
+                written.
         """
         files: dict[str, tuple[bytes, bytes]] = {}
         for path, text in plan.texts.items():
@@ -105,10 +106,10 @@ class EditHistory:
         """Undo the last edit, if there is one.
 
         Returns:
-            The files that were written.
+            The paths of the written files; empty if there is no edit to undo.
 
         Raises:
-            EditRefusedError: as for `apply`.
+            EditRefusedError: see `apply`.
         """
         if not self._done:
             return []
@@ -120,7 +121,7 @@ class EditHistory:
         return list(step.files)
 
     def redo(self) -> list[str]:
-        """Redo the last edit that was undone."""
+        """Redo the last undone edit, and return the paths of the written files."""
         if not self._undone:
             return []
         step = self._undone[-1]
@@ -142,9 +143,9 @@ def _workspace_of(file: Path) -> Path:
 
 
 def _write(new: Mapping[str, bytes], known: Mapping[str, bytes]) -> None:
-    """Write files whose content is the known one.
+    """Write files if their content is still as expected.
 
-    If one cannot be written, the files written before are restored.
+    If a file cannot be written, the files written before it are restored.
     """
     for path, content in known.items():
         if _bytes_of(path) != content:

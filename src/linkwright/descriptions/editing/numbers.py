@@ -1,4 +1,4 @@
-"""Formatting and parsing of numbers as written in descriptions."""
+"""The formatting and parsing of numbers in descriptions."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _PARTS_OF_PI = (1, 2, 3, 4, 6, 12)
 
 
 def shortest(value: float, tolerance: float = EXACT) -> str:
-    """Format a number with as few digits as possible, without an exponent.
+    """Return a number as text with as few digits as possible, without an exponent.
 
     Args:
         value: a finite number.
@@ -32,7 +32,7 @@ def same(some: float, other: float) -> bool:
 
 
 def numbers_of(text: str, count: int) -> list[float] | None:
-    """Return the numbers of an attribute; None unless it has exactly that many, all finite."""
+    """Return the numbers of an attribute, or None unless there are `count` finite numbers."""
     try:
         found = [float(word) for word in text.split()]
     except ValueError:
@@ -41,9 +41,9 @@ def numbers_of(text: str, count: int) -> list[float] | None:
 
 
 def part_of_pi(angle: float) -> str | None:
-    """Format an angle as an expression such as ``-pi/2`` or ``3*pi/4``.
+    """Return an angle as an expression such as ``-pi/2`` or ``3*pi/4``.
 
-    Returns None if it is not such a fraction of pi.
+    The result is None if the angle is not such a fraction of pi.
     """
     for parts in _PARTS_OF_PI:
         whole = round(angle / pi * parts)
@@ -54,6 +54,6 @@ def part_of_pi(angle: float) -> str | None:
 
 
 def in_degrees(angle: float) -> str | None:
-    """Format an angle in degrees, for ``radians()``; None if that is not short."""
+    """Return an angle as a text in degrees, for ``radians()``, or None if the text is not short."""
     text = shortest(degrees(angle), _EXACT_DEGREES)
     return text if len(text.lstrip("-").replace(".", "")) <= 5 else None

@@ -1,4 +1,4 @@
-"""Places of texts that determine numbers, and candidates for editing them."""
+"""The locations of texts that determine numbers, and candidates for edits of these texts."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _LOOSE = (ast.IfExp, ast.BoolOp, ast.Compare, ast.Lambda, ast.NamedExpr)
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """The characters `start` to `end` (exclusive) of a source text."""
+    """A range of characters in a source text, from `start` to `end` (exclusive)."""
 
     source: SourceText
     start: int
@@ -26,16 +26,16 @@ class Place:
 
     @property
     def text(self) -> str:
-        """The text at the place."""
+        """The text in the range."""
         return self.source.text[self.start : self.end]
 
     @property
     def span(self) -> Span:
-        """The place as lines and columns."""
+        """The range as lines and columns."""
         return self.source.span(self.start, self.end)
 
     def part(self, start: int, end: int) -> Place:
-        """Return the place of a range of characters, counted from the start of this place."""
+        """Return a part of the range, with offsets from the start of this range."""
         return Place(self.source, self.start + start, self.start + end)
 
 
@@ -44,10 +44,10 @@ class Candidate:
     """A text that may determine a number.
 
     Attributes:
-        place: the place of the text, where it is replaced.
+        place: the range of the text, which an edit replaces.
         value: the current value of the text.
-        write: returns the text for another value with a tolerance.
-        is_choice: whether the value is 1 or -1, which as a factor selects a side or a direction.
+        write: a function that returns the text for another value, given a tolerance.
+        is_choice: whether the value is 1 or -1, which may be a factor that selects a side or a direction.
     """
 
     place: Place
@@ -57,12 +57,12 @@ class Candidate:
 
 
 def words(place: Place) -> list[Place]:
-    """Return the words of a text; an expression counts as one word."""
+    """Return the ranges of the words in a text; an expression counts as one word."""
     return [place.part(*found.span()) for found in _WORD.finditer(place.text)]
 
 
 def literal(place: Place) -> Candidate | None:
-    """Return a candidate for a literal number; None if the word is not one."""
+    """Return a candidate for a word that is a literal number, or None for other words."""
     try:
         value = float(place.text)
     except ValueError:
@@ -71,7 +71,10 @@ def literal(place: Place) -> Candidate | None:
 
 
 def added_constants(word: Place) -> Iterator[Candidate]:
-    """Yield numbers on which an expression depends linearly: terms of a sum, alone or in ``radians()``."""
+    """Yield candidates for the numbers on which an expression depends linearly.
+
+    These are the terms of a sum, also inside ``radians()``.
+    """
     found = _ONE_EXPRESSION.match(word.text)
     inside = None if found is None else found[1]
     if inside is None or not inside.isascii():
@@ -88,7 +91,7 @@ def added_constants(word: Place) -> Iterator[Candidate]:
 def is_constant(word: Place) -> bool:
     """Return whether a word is a constant expression.
 
-    Its only names may be pi and conversions from degrees to radians.
+    A constant expression has no names except pi and the conversions from degrees to radians.
     """
     found = _ONE_EXPRESSION.match(word.text)
     tree = _tree(found[1].strip()) if found is not None and found[1] else None
@@ -96,7 +99,10 @@ def is_constant(word: Place) -> bool:
 
 
 def replacement_candidate(word: Place, value: float) -> Candidate:
-    """Return a candidate that replaces a whole word by a number, as a fraction of pi if the word contains pi."""
+    """Return a candidate that replaces a whole word with a number.
+
+    If the word contains pi or ``radians``, the number is written as a fraction of pi or in degrees, if possible.
+    """
 
     def write(number: float, tolerance: float) -> str:
         if "pi" in word.text or "radians" in word.text:
@@ -114,7 +120,7 @@ def replacement_candidate(word: Place, value: float) -> Candidate:
 def addition_candidate(word: Place, *, is_angle: bool) -> Candidate | None:
     """Return a candidate that adds a number to an expression.
 
-    Returns None if the word is not a single expression.
+    The result is None if the word is not a single expression.
     """
     found = _ONE_EXPRESSION.match(word.text)
     if found is None:
@@ -167,14 +173,14 @@ def _terms(node: ast.expr, inner: Place) -> Iterator[Candidate]:
 
 
 def _is_angle_of_degrees(node: ast.expr) -> bool:
-    """Return whether an expression is an angle in degrees times a conversion, such as ``30*pi/180``."""
+    """Return whether an expression converts an angle from degrees, such as ``30*pi/180``."""
     return _names(node) <= _OF_PI and "pi" in _names(node) and any(_number(part) == 180 for part in ast.walk(node))
 
 
 def _signed_term(node: ast.BinOp, inner: Place) -> Candidate | None:
-    """Return the last number of a sum with its sign, which may change.
+    """Return a candidate for the last number of a sum, including its sign, which may change.
 
-    Returns None if brackets are in the way.
+    The result is None if the last term is not a number, or is in brackets.
     """
     value = _number(node.right)
     if value is None:
@@ -194,7 +200,7 @@ def _signed_term(node: ast.BinOp, inner: Place) -> Candidate | None:
 
 
 def _number(node: ast.AST) -> float | None:
-    """Return the value of a number with its sign; None for any other node."""
+    """Return the value of a literal number with its sign, or None for any other node."""
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub) and isinstance(node.operand, ast.Constant):
         value = _number(node.operand)
         return None if value is None else -value

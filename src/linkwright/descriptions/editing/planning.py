@@ -1,7 +1,7 @@
-"""Planning of edits: the smallest edit of the text that makes a requested change, or why there is none.
+"""The planning of edits: the smallest edit of the text that makes a requested change.
 
 The texts that may determine a number are tried in turn. The plan uses the first text whose edit changes the expanded
-document exactly as requested.
+document exactly as requested. If there is none, the edit is refused with a reason.
 """
 
 from __future__ import annotations
@@ -46,9 +46,9 @@ class EditPlan:
     """A planned edit.
 
     Attributes:
-        texts: real path of a file -> its new text, without a byte order mark; empty if nothing changes.
-        before: the same files -> their old texts.
-        also: the other changes, if the request allows them.
+        texts: the new text of each changed file without a byte order mark, by real path; empty if nothing changes.
+        before: the old texts of the same files, by real path.
+        also: the names of other parts that the edit changes, if the request allows this.
     """
 
     texts: dict[str, str]
@@ -57,15 +57,15 @@ class EditPlan:
 
 
 def plan_edit(description: Description, request: EditRequest, allowed: Allowed = lambda _: None) -> EditPlan:
-    """Find the smallest edit of the text that makes a requested change, and nothing else.
+    """Return the smallest edit of the text that makes a requested change, and no other change.
 
     Args:
-        description: the description, just read from a file.
+        description: the description, as it was just read from a file.
         request: the requested change.
-        allowed: returns why a file may not be written, else None.
+        allowed: a function that returns the reason why a file must not be written, or None.
 
     Raises:
-        EditRefusedError: there is no such edit, with a diagnostic EDIT101 to EDIT106.
+        EditRefusedError: if there is no such edit, with one of the diagnostics EDIT101 to EDIT106.
     """
     planner = _Planner(description, request, allowed)
     for name, wanted in planner.wanted():
@@ -74,16 +74,16 @@ def plan_edit(description: Description, request: EditRequest, allowed: Allowed =
 
 
 class _Found(NamedTuple):
-    """An edited description that has the requested number, and the names of other parts that changed, too."""
+    """An edited description with the requested number, and the names of other changed parts."""
 
     snapshot: Snapshot
     also: tuple[str, ...]
 
 
 class _Planner:
-    """Computes one plan, attribute by attribute and number by number.
+    """The planner of one edit, attribute by attribute and number by number.
 
-    `_now` is the description edited so far.
+    `_now` is the description with the edits so far.
     """
 
     def __init__(self, description: Description, request: EditRequest, allowed: Allowed) -> None:
@@ -99,7 +99,7 @@ class _Planner:
         self._also_changed: dict[str, None] = {}
 
     def wanted(self) -> Iterator[tuple[str, list[float]]]:
-        """Yield the attributes to edit, and their numbers."""
+        """Yield the name of each attribute to edit, with its requested numbers."""
         request = self._request
         for given in (request.xyz, request.rpy):
             if given is not None and not all(isfinite(value) and abs(value) <= _LARGEST for value in given):
@@ -119,7 +119,7 @@ class _Planner:
             yield "rpy", list(request.rpy)
 
     def set(self, name: str, wanted: list[float]) -> None:
-        """Set an attribute to other numbers."""
+        """Plan the edits that give an attribute the requested numbers."""
         present = self._values(name)
         changed = [i for i, (old, new) in enumerate(zip(present, wanted, strict=True)) if not same(old, new)]
         if not changed:
@@ -178,7 +178,10 @@ class _Planner:
     def _tried(
         self, candidate: Candidate, target: Target, index: int, wanted: float, attempts: list[Attempt]
     ) -> _Found | None:
-        """Try a candidate: return the edited description, or None if it does not have the requested number."""
+        """Return the description edited through a candidate, or None if the edit is not suitable.
+
+        The reason for a failure is appended to `attempts`.
+        """
         why_not = self._allowed(os.path.realpath(candidate.place.source.name))
         if why_not is not None:
             attempts.append(Attempt(candidate.place, forbidden=why_not))
@@ -195,7 +198,7 @@ class _Planner:
             change = values[index] - present
             slope = change / (guess - candidate.value) if guess != candidate.value else 0.0
             if abs(slope) < _LEAST_SLOPE:
-                return None  # The edit does not result in the requested number.
+                return None  # the text does not affect the requested number
             if candidate.is_choice and not any(same(abs(slope), plain) for plain in _PLAIN_SLOPES):
                 attempts.append(Attempt(candidate.place, choice=True))
                 return None
@@ -212,9 +215,9 @@ class _Planner:
     def _edit_together(
         self, target: Target, place: Place, parts: list[Place], new: dict[int, float]
     ) -> Snapshot | None:
-        """Return the result of editing several literal numbers of an attribute in one edit.
+        """Return the description after one edit of several literal numbers in an attribute.
 
-        Returns None if more would change.
+        The result is None if other parts would change, too.
         """
         if self._allowed(os.path.realpath(place.source.name)) is not None:
             return None
@@ -238,7 +241,7 @@ class _Planner:
             return None
 
     def _also(self, trial: Snapshot, target: Target, index: int, values: list[float]) -> tuple[str, ...]:
-        """Return the names of the other parts that a trial changes."""
+        """Return the names of the other parts that a trial edit changes."""
         found = self._differences(trial, target)
         present = self._values(target.attribute)
         if any(values[i] != present[i] for i in range(len(values)) if i != index):
@@ -248,10 +251,10 @@ class _Planner:
     def _differences(self, trial: Snapshot, target: Target) -> list[str]:
         return [described(trail) for trail in other_differences(self._now.root, trial.root, target)]
 
-    # attributes that are not written yet
+    # missing attributes
 
     def _add(self, target: Target, wanted: list[float]) -> None:
-        """Write a missing attribute or element."""
+        """Plan the addition of a missing attribute or element."""
         element = target.element(self._now.root)
         place, text = self._new_text(target, element, " ".join(map(shortest, wanted)))
         why_not = self._allowed(os.path.realpath(place.source.name))
@@ -287,7 +290,7 @@ class _Planner:
         return Place(written.source, edit.start, edit.end), edit.text
 
     def _twin(self, element: Element) -> Element:
-        """Return an element as written in its file, before any expansion."""
+        """Return the unexpanded element in the file for an element of the expansion."""
         if element.source is None:
             raise EditRefusedError(_not_written(element))
         document: Document = parse(element.source.text, element.source.name)
@@ -316,7 +319,7 @@ class _Planner:
         return numbers_of(element.attributes[target.attribute], 4 if target.attribute == "quat_xyzw" else 3)
 
     def _written(self, element: Element, name: str) -> Place:
-        """Return the place of an attribute's text: on its element, or in an ``<xacro:attribute>``."""
+        """Return the range of an attribute's text, on its element or in an ``<xacro:attribute>``."""
         place = attribute(element, name)
         if place is not None:
             return place

@@ -1,4 +1,4 @@
-"""Candidates for editing a number of an attribute, the most likely first."""
+"""The candidates for editing a number of an attribute, starting with the most likely one."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ def proposals(
     present: Sequence[float],
     is_angle: bool,
 ) -> Iterator[Candidate]:
-    """Yield candidates for editing one number of an attribute.
+    """Yield the candidates for editing one number of an attribute, the most likely first.
 
     Args:
-        place: the attribute as written.
+        place: the range of the attribute's text.
         index: the index of the number.
         frame: the macro call in which the attribute is evaluated.
-        definitions: the sources of named values.
+        definitions: the definitions of named values.
         present: the current numbers of the attribute.
         is_angle: whether the numbers are angles.
     """
@@ -57,9 +57,9 @@ def proposals(
 
 
 def _reached(place: Place, index: int, frame: Frame | None, definitions: Definitions) -> Iterator[Place]:
-    """Yield the words that determine a number.
+    """Yield the ranges of the words that determine a number.
 
-    They are the attribute's own word, then the definitions of its names, recursively.
+    These are the word in the attribute itself, then the words in the definitions of its names, recursively.
     """
     seen: set[tuple[str, int]] = set()
     pending: list[tuple[Place, int]] = [(place, 0)]
@@ -78,7 +78,7 @@ def _reached(place: Place, index: int, frame: Frame | None, definitions: Definit
 
 
 def _numbers_in(word: Place, value: float) -> Iterator[Candidate]:
-    """Yield the numbers that are written in a word."""
+    """Yield candidates for the literal numbers in a word."""
     known = literal(word)
     if known is not None:
         yield known
@@ -90,7 +90,7 @@ def _numbers_in(word: Place, value: float) -> Iterator[Candidate]:
 
 
 def _whole(place: Place, index: int, present: Sequence[float]) -> Candidate:
-    """Return a candidate for all numbers of an attribute that is a single expression."""
+    """Return a candidate that replaces a single expression with all numbers of the attribute."""
 
     def write(number: float, tolerance: float) -> str:
         return " ".join(

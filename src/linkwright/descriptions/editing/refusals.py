@@ -13,12 +13,12 @@ _MOST_NAMED = 6
 
 @dataclass(frozen=True, slots=True)
 class Attempt:
-    """A candidate that failed.
+    """A candidate whose edit failed.
 
     Attributes:
-        place: the place of the candidate's text.
-        also: the other changes that the edit would make.
-        forbidden: the reason why the file may not be written.
+        place: the range of the candidate's text.
+        also: the names of the other parts that the edit would change.
+        forbidden: the reason why the file must not be written, or None.
         choice: whether the text is a factor that selects a side.
         doubtful: whether the text may be such a factor.
         error: whether the description could not be expanded with the edit.
@@ -36,10 +36,10 @@ def refusal(place: Place, index: int | None, attempts: Sequence[Attempt], tag: s
     """Return the finding with the reason why an edit is refused.
 
     Args:
-        place: the attribute as written, or the place for a new one.
-        index: the index of the number that cannot be changed; None for an attribute that is not written.
-        attempts: the failed candidates, in order.
-        tag: the element that would be written.
+        place: the range of the attribute's text, or the position at which it would be added.
+        index: the index of the number that cannot be changed, or None for an attribute that is missing.
+        attempts: the failed candidates, in the order in which they were tried.
+        tag: the tag of the element that would be added.
     """
     written = " ".join(place.text.split())
     noted = {
@@ -87,7 +87,7 @@ def _named(also: Sequence[str]) -> object:
 
 
 def forbidden_file(path: str, why: object) -> Diagnostic:
-    """Return the finding that a file may not be written."""
+    """Return the finding that a file must not be written."""
     message = phrase("'{path}' is not written: {why}", path=display_path(path), why=why)
     hint = phrase("open the description from your own workspace, or change a copy of the file")
     return Diagnostic("EDIT106", message, hint=hint)

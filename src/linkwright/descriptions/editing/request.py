@@ -1,4 +1,4 @@
-"""Requests to edit a robot: the part and its new values."""
+"""Requests to edit a robot, each with a part and its new values."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ WITHOUT_AXIS = ("fixed", "floating")
 
 @dataclass(frozen=True, slots=True)
 class EditRequest:
-    """An edit: the pose of a part, or the axis of a joint.
+    """A requested edit of the pose of a part, or of the axis of a joint.
 
     Attributes:
         part: the edited part: the origin of a joint, visual, collision or inertial, or the axis of a joint.
         name: the name of the joint, or of the link that contains any other part.
-        index: which of the link's visuals or collisions, from 0.
-        xyz: the requested position in metres, in the frame of the parent link or of the link; for `axis` the axis, in
-            the joint's frame. None to keep the current one.
-        rpy: the requested roll, pitch and yaw in rad; None to keep the current ones.
+        index: the index of the visual or collision in the link, starting at 0.
+        xyz: the requested position in metres, in the frame of the parent link or of the link. For the part ``axis``,
+            the requested axis in the joint frame. None leaves the current value.
+        rpy: the requested roll, pitch and yaw in rad. None leaves the current values.
         together: whether other parts that depend on the same text may change, too.
     """
 
@@ -42,7 +42,7 @@ class EditRequest:
         return "axis" if self.part == "axis" else "origin"
 
     def owner(self, robot: Robot) -> Element | None:
-        """Return the joint, visual, collision or inertial in a robot; None if there is none."""
+        """Return the element of the joint, visual, collision or inertial, or None if there is none."""
         if self.part in ("joint", "axis"):
             joint = robot.joints.get(self.name)
             if joint is None or (self.part == "axis" and joint.type in WITHOUT_AXIS):

@@ -1,4 +1,4 @@
-"""Snapshots of a description: the texts of its files, some replaced by trial edits."""
+"""Snapshots of a description: the texts of its files, some of which trial edits replace."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ _YAML = (".yaml", ".yml")
 
 @dataclass(frozen=True)
 class Snapshot:
-    """An expansion of a description.
+    """An expansion of a description with changed texts.
 
     Attributes:
         description: the description as it was first read, with its arguments.
-        texts: real path of a file -> its changed text.
+        texts: the changed text of each edited file, by real path.
         document: the expansion with these texts.
         files: the files that were read for the expansion.
-        expansion: the record of the expansion; None for plain URDF.
+        expansion: the result of the expansion, or None for plain URDF.
     """
 
     description: Description
@@ -45,7 +45,7 @@ class Snapshot:
 
     @classmethod
     def of(cls, description: Description) -> Snapshot:
-        """Return the snapshot of a description that was just read."""
+        """Return the snapshot of a description that was just read, without changes."""
         return cls(description, {}, description.document, description.files)
 
     @property
@@ -55,7 +55,7 @@ class Snapshot:
 
     @cached_property
     def definitions(self) -> Definitions:
-        """The sources of named values."""
+        """The definitions of named values in the files."""
         from linkwright.xacro.cache import read_document
 
         if self.description.expansion is None:
@@ -67,15 +67,15 @@ class Snapshot:
             if path.suffix in _YAML:
                 others.append(path)
             else:
-                with suppress(LinkwrightError):  # The file may be optional and not exist.
+                with suppress(LinkwrightError):  # an optional file may not exist
                     documents.append(read_document(str(path), overlay))
         return Definitions(documents, others, overlay)
 
     def with_text(self, place: Place, text: str) -> Snapshot:
-        """Return the description with another text at one place.
+        """Return a snapshot in which a text replaces one range of a file.
 
         Raises:
-            LinkwrightError: the description can no longer be expanded.
+            LinkwrightError: if the description can no longer be expanded.
         """
         whole = place.source.text
         changed = whole[: place.start] + text + whole[place.end :]
@@ -83,10 +83,10 @@ class Snapshot:
         return self.with_texts(texts)
 
     def with_texts(self, texts: Mapping[str | os.PathLike[str], str]) -> Snapshot:
-        """Return the description with these texts in place of the files' texts.
+        """Return a snapshot in which texts replace whole files.
 
         Raises:
-            LinkwrightError: the description cannot be expanded with them.
+            LinkwrightError: if the description cannot be expanded with these texts.
         """
         name, expansion, overlay = self.description.name, self.description.expansion, Overlay(texts)
         text = overlay.text(name)
@@ -102,10 +102,10 @@ class Snapshot:
 
 
 def read_again(description: Description) -> Description:
-    """Read a description again from its files, with the same arguments and packages.
+    """Return a description read again from its files, with the same arguments and packages.
 
     Raises:
-        LinkwrightError: the files can no longer be read or expanded.
+        LinkwrightError: if the files can no longer be read or expanded.
     """
     snapshot = Snapshot.of(description).with_texts({})
     if snapshot.expansion is None:

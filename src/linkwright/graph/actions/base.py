@@ -17,15 +17,15 @@ class ActionEndpoint(ABC):
     """The server or client side of an action. Leaving its ``with`` block destroys it.
 
     Args:
-        node: the node that owns it.
+        node: the node that owns the endpoint.
         action_type: the action's class or type name.
-        action_name: relative, absolute or private name.
+        action_name: a relative, absolute or private name.
 
     Raises:
         InvalidServiceNameError: the name is not valid.
     """
 
-    __class_getitem__: Any = classmethod(GenericAlias)  # as in rclpy, annotations may name the action type
+    __class_getitem__: Any = classmethod(GenericAlias)  # As in rclpy, annotations may name the action type.
 
     def __init__(self, node: Node, action_type: Any, action_name: str) -> None:
         from linkwright.messages import get_action
@@ -57,5 +57,5 @@ class ActionEndpoint(ABC):
         self.destroy()
 
     def _full_name(self, name: str) -> str:
-        """Return the full name of one of the action's services or topics."""
+        """Return the absolute name of one of the action's services or topics (``NAME/_action/...``)."""
         return f"{self._action_name}/_action/{name}"

@@ -20,16 +20,16 @@ from linkwright.graph.qos.profile import ACTION_STATUS_QOS, DEFAULT_QOS, SERVICE
 
 
 class ClientGoalHandle:
-    """The client's handle of a goal that it has sent (rclpy ``ClientGoalHandle``).
+    """The client's handle of a goal that the client has sent (rclpy ``ClientGoalHandle``).
 
     Attributes:
         goal_id: the goal's ID (unique_identifier_msgs/msg/UUID).
         accepted: whether the server accepted the goal.
-        stamp: when the server accepted it (builtin_interfaces/msg/Time).
+        stamp: when the server accepted the goal (builtin_interfaces/msg/Time).
         status: the goal's latest known state.
     """
 
-    __class_getitem__: Any = classmethod(GenericAlias)  # as in rclpy, annotations may name the action type
+    __class_getitem__: Any = classmethod(GenericAlias)  # As in rclpy, annotations may name the action type.
 
     def __init__(self, action_client: ActionClient, goal_id: Any, goal_response: Any) -> None:
         self._action_client = action_client
@@ -48,22 +48,39 @@ class ClientGoalHandle:
         return f"ClientGoalHandle <id={self.goal_id.uuid}, accepted={self.accepted}, status={self.status}>"
 
     def cancel_goal(self, timeout_sec: float | None = None) -> Any:
-        """Request cancellation of the goal, and block until the server has answered.
+        """Request cancellation of the goal, and block until the server responds.
 
-        See `Client.call`.
+        For the timeout and the errors see `Client.call`.
+
+        Returns:
+            The action_msgs/srv/CancelGoal response; None if it does not arrive in time.
         """
         return _waited_for(self.cancel_goal_async(), timeout_sec)
 
     def cancel_goal_async(self) -> Future[Any]:
-        """Request cancellation of the goal; the future gets an action_msgs/srv/CancelGoal response."""
+        """Request cancellation of the goal.
+
+        Returns:
+            A future that gets the action_msgs/srv/CancelGoal response.
+        """
         return self._action_client.cancel(self)
 
     def get_result(self, timeout_sec: float | None = None) -> Any:
-        """Request the result, and block until it arrives; see `Client.call`."""
+        """Request the result, and block until it arrives.
+
+        For the timeout and the errors see `Client.call`.
+
+        Returns:
+            The response with ``status`` and ``result``; None if it does not arrive in time.
+        """
         return _waited_for(self.get_result_async(), timeout_sec)
 
     def get_result_async(self) -> Future[Any]:
-        """Request the result; the future gets a response with ``status`` and ``result``."""
+        """Request the result.
+
+        Returns:
+            A future that gets the response with ``status`` and ``result``.
+        """
         return self._action_client.request_result(self)
 
 
@@ -130,7 +147,7 @@ class ActionClient(ActionEndpoint):
         self._handle.add_cleanup(self.destroy)
 
     def server_is_ready(self) -> bool:
-        """Return whether an action server is available, with all its services and topics."""
+        """Return whether an action server with all its services and topics is available."""
         clients = (self._goal_client, self._cancel_client, self._result_client)
         return all(client.service_is_ready() for client in clients) and all(
             subscription.get_publisher_count() for subscription in (self._feedback, self._status)
@@ -218,7 +235,10 @@ class ActionClient(ActionEndpoint):
         return handed
 
     def destroy(self) -> None:
-        """Remove the client from the graph; pending futures stay pending. A second call does nothing."""
+        """Remove the client from the graph. A second call does nothing.
+
+        Pending futures stay pending.
+        """
         if self._destroyed:
             return
         self._destroyed = True
@@ -245,7 +265,7 @@ class ActionClient(ActionEndpoint):
             return
         callback = self._feedback_callbacks.get(key)
         if callback is not None and not iscoroutinefunction(callback):
-            # Deliver the feedback that was published before the goal ended ahead of its result.
+            # Feedback that was published before the goal ended must be delivered before its result.
             while (call := self._feedback.take()) is not None:
                 call()
         self._feedback_callbacks.pop(key, None)

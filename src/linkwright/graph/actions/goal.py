@@ -66,7 +66,7 @@ _NEXT = {
 
 
 class GoalOwner(Protocol):
-    """The interface through which a goal calls its action server."""
+    """The part of an action server that its goal handles call."""
 
     @property
     def action_type(self) -> Any:
@@ -79,14 +79,14 @@ class GoalOwner(Protocol):
         """Publish the feedback of a goal."""
 
     def state_changed(self, goal: ServerGoalHandle) -> None:
-        """Handle a change of a goal's state: publish the states of all goals."""
+        """Publish the states of all goals after the state of one has changed."""
 
     def forget(self, goal: ServerGoalHandle) -> None:
         """Remove a goal from the server."""
 
 
 class ServerGoalHandle:
-    """The server's handle of an accepted goal. It may be used from any thread.
+    """The server's handle of an accepted goal, usable from any thread.
 
     Attributes:
         request: the goal message.
@@ -94,7 +94,7 @@ class ServerGoalHandle:
         ended_ns: when the goal ended, in nanoseconds of the server's clock; None while it has not ended.
     """
 
-    __class_getitem__: Any = classmethod(GenericAlias)  # as in rclpy, annotations may name the action type
+    __class_getitem__: Any = classmethod(GenericAlias)  # As in rclpy, annotations may name the action type.
 
     def __init__(self, action_server: GoalOwner, goal_info: Any, goal_request: Any) -> None:
         self._server = action_server
@@ -130,13 +130,13 @@ class ServerGoalHandle:
 
     @property
     def is_cancel_requested(self) -> bool:
-        """Whether the goal is being canceled."""
+        """Whether the goal is in the state CANCELING."""
         return not self._destroyed and self._status is GoalStatus.CANCELING
 
     def execute(self, execute_callback: Callable[[ServerGoalHandle], Any] | None = None) -> None:
         """Start executing the goal: schedule the given callback, or the server's by default.
 
-        A goal that has been canceled in the meantime is passed to the callback as well, which decides how it ends.
+        The callback also receives a goal that is canceled before it starts, and decides how the goal ends.
         """
         with self._lock:
             if not self.is_cancel_requested:
@@ -144,7 +144,7 @@ class ServerGoalHandle:
         self._server.start_execution(self, execute_callback)
 
     def publish_feedback(self, feedback: Any) -> None:
-        """Publish feedback.
+        """Publish a feedback message for the goal.
 
         Raises:
             TypeError: `feedback` is not a feedback message of the action.
@@ -158,10 +158,11 @@ class ServerGoalHandle:
     def succeed(self, response: Any = None) -> None:
         """Mark the goal as succeeded.
 
-        `response` is the goal's result; if it is left out, the execute callback returns the result.
+        Args:
+            response: the goal's result; None if the execute callback returns the result.
 
         Raises:
-            RuntimeError: the goal's state does not allow it to succeed.
+            RuntimeError: the goal cannot succeed in its current state.
         """
         self._end(GoalEvent.SUCCEED, response)
 
@@ -174,7 +175,7 @@ class ServerGoalHandle:
         self._end(GoalEvent.CANCELED, response)
 
     def update(self, event: GoalEvent) -> None:
-        """Move the goal to another state, and publish its status.
+        """Apply an event to the goal's state, and publish the new state.
 
         Does nothing once the handle is destroyed.
 
@@ -199,7 +200,7 @@ class ServerGoalHandle:
         self._server.forget(self)
 
     def retire(self) -> None:
-        """Deactivate the handle without a call to the server, which removes the goal itself."""
+        """Deactivate the handle after the server itself has removed the goal."""
         self._destroyed = True
 
     def set_result(self, result: Any) -> None:

@@ -47,7 +47,7 @@ def default_cancel_callback(cancel_request: ServerGoalHandle) -> CancelResponse:
 
 
 async def awaited_result(value: Any) -> Any:
-    """Return the result of a callback, awaiting it first if it is a coroutine."""
+    """Return a callback's return value, awaited first if it is awaitable."""
     return await value if isawaitable(value) else value
 
 
@@ -154,7 +154,7 @@ class ActionServer(ActionEndpoint):
         self._cancel_callback = cancel_callback or default_cancel_callback
 
     def destroy(self) -> None:
-        """Remove the server from the graph; unfinished goals are dropped. A second call does nothing."""
+        """Remove the server from the graph, and drop unfinished goals. A second call does nothing."""
         with self._lock:
             if self._destroyed:
                 return
@@ -169,7 +169,7 @@ class ActionServer(ActionEndpoint):
             self._expiry.destroy()
         self._handle.remove_cleanup(self.destroy)
 
-    # --- for goal handles --------------------------------------------------------------------------------------------
+    # --- called by goal handles --------------------------------------------------------------------------------------
 
     def start_execution(self, goal: ServerGoalHandle, callback: Callable[[ServerGoalHandle], Any] | None) -> None:
         """Schedule the execution of a goal."""
@@ -244,10 +244,14 @@ class ActionServer(ActionEndpoint):
         reply(response)
 
     def _goals_to_cancel(self, info: Any) -> tuple[int, list[ServerGoalHandle]]:
-        """Return the preliminary return code of a cancel request, and the goals that it selects.
+        """Return the preliminary return code of a cancel request, and the cancelable goals selected.
 
-        As in rcl_action's ``process_cancel_request``: an ID selects that goal, a stamp selects all goals accepted up to
-        then, an ID and a stamp select both, and a request with neither selects all goals.
+        As in rcl_action's ``process_cancel_request``:
+
+        - An ID selects that goal.
+        - A stamp selects all goals that were accepted up to that time.
+        - An ID with a stamp selects that goal and those accepted up to that time.
+        - A request with neither selects all goals.
         """
         uuid = bytes(info.goal_id.uuid)
         has_id = any(uuid)
@@ -353,7 +357,7 @@ class ActionServer(ActionEndpoint):
 
 
 class _Executions(Entity):
-    """A queue of accepted goals whose execution has not started."""
+    """The queue of accepted goals whose execution has not started."""
 
     def __init__(self, node: NodeHandle) -> None:
         super().__init__(node, FREE_GROUP)

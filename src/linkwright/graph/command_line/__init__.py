@@ -1,1 +1,1 @@
-"""The ROS arguments of a process, and the logging that they configure."""
+"""The ROS arguments of a process, and the logging setup that they specify."""

@@ -1,4 +1,4 @@
-"""The logging setup of a process, as its ROS arguments configure it: levels, console, log file."""
+"""The logging setup of a process, as its ROS arguments specify: levels, console, log file."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ class Logging:
 
     Attributes:
         sink: receives the log records of the process's graph.
-        levels: the levels of its loggers.
+        levels: the logger levels of the process.
         rosout: whether nodes publish their log records on ``/rosout``.
-        file: its log file; None if there is none.
+        file: the log file of the process; None if there is none.
     """
 
     sink: LogSink
@@ -28,7 +28,7 @@ class Logging:
     file: LogFile | None = None
 
     def close(self) -> None:
-        """Flush buffered log records."""
+        """Flush the buffered log records and close the log file, if there is one."""
         if self.file is not None:
             self.file.close()
 
@@ -42,12 +42,12 @@ def set_levels(levels: LogLevels, arguments: RosArguments) -> None:
 
 
 def set_up(arguments: RosArguments, executable: str, levels: LogLevels | None = None) -> Logging:
-    """Set up the logging of a process as its ROS arguments configure it.
+    """Set up the logging of a process as its ROS arguments specify.
 
     Args:
         arguments: the ROS arguments of the process.
-        executable: the program's name, which names the log file.
-        levels: the object that receives the levels; a new one by default.
+        executable: the program's name, used in the name of the log file.
+        levels: the object that stores the levels; a new one by default.
     """
     levels = levels or LogLevels()
     set_levels(levels, arguments)

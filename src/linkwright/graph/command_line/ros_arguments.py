@@ -23,7 +23,7 @@ class RemapRule:
 
     Attributes:
         node: the name of the node that the rule applies to; None for every node.
-        source: the name to replace, ``__node`` (or ``__name``), or ``__ns``. A prefix ``rostopic://`` or
+        source: the name to replace, ``__node`` (or ``__name``), or ``__ns``. The prefix ``rostopic://`` or
             ``rosservice://`` restricts the rule to topics or services.
         target: the new name.
     """
@@ -65,7 +65,7 @@ class RosArguments:
         """Return the remappings ``(from, to)`` for a node, in order, including those for every node.
 
         Args:
-            node_name: the name that the node's code gives it.
+            node_name: the node's name in the source code, before remapping.
         """
         return [(rule.source, rule.target) for rule in self.remap_rules if rule.node in (None, node_name)]
 
@@ -134,7 +134,7 @@ def _read_remapping(ros: RosArguments, rule: str) -> None:
 
 
 def _read_parameter(ros: RosArguments, rule: str) -> None:
-    from linkwright.graph.parameters.files import parse_value  # imported here: few nodes are given parameters
+    from linkwright.graph.parameters.files import parse_value  # Imported here because few nodes receive parameters.
 
     name, text = _assignment(rule, phrase("a parameter"), phrase("name:=value"))
     pattern = ANY_NODE

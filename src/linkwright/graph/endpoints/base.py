@@ -1,4 +1,4 @@
-"""The base of publishers, subscriptions, services and clients, and how the graph describes them.
+"""The base classes and the descriptions of publishers, subscriptions, services and clients.
 
 Message and service classes are checked as in rclpy's ``type_support``, with the same errors.
 """
@@ -30,18 +30,18 @@ class EndpointKind(Enum):
 
 @dataclass(frozen=True, slots=True)
 class EndpointInfo:
-    """The description of a publisher, subscription, service or client, of this process or another.
+    """The description of a publisher, subscription, service or client of any process.
 
     Attributes:
         kind: publisher, subscription, service or client.
-        node: the node it belongs to; None until discovery has found it.
+        node: the node that owns the endpoint; None until discovery has found the node.
         name: the topic's or service's absolute ROS name.
         type_name: such as ``sensor_msgs/msg/JointState``.
-        qos: the QoS that it offers or requests.
-        gid: its globally unique identifier, 16 bytes.
+        qos: the offered or requested QoS.
+        gid: the endpoint's globally unique identifier, 16 bytes.
         type_hash: ``RIHS01_...``; empty if it is not known (Humble does not send it).
-        local: whether it belongs to this process.
-        host: the machine that it runs on; empty if it is not known.
+        local: whether the endpoint belongs to this process.
+        host: the machine that the endpoint runs on; empty if it is not known.
     """
 
     kind: EndpointKind
@@ -63,11 +63,11 @@ class MessageInfo(Mapping[str, Any]):
 
     Attributes:
         source_timestamp: when the message was published, in nanoseconds since the epoch.
-        received_timestamp: when it was received, in nanoseconds since the epoch.
+        received_timestamp: when the message was received, in nanoseconds since the epoch.
         publisher_gid: the GID of the publisher, 16 bytes.
-        from_outside: whether it was sent by another process.
-        publication_sequence_number: counted by the publisher; None if the publisher does not send it.
-        reception_sequence_number: counted by the subscription; None if the subscription does not count.
+        from_outside: whether another process sent the message.
+        publication_sequence_number: the publisher's count of messages; None if the publisher does not send it.
+        reception_sequence_number: the subscription's count of messages; None if the subscription does not count.
     """
 
     source_timestamp: int
@@ -99,10 +99,10 @@ SrvTypeResponse = TypeVar("SrvTypeResponse")
 
 
 def check_for_type_support(interface: Any) -> None:
-    """Check that an object is an interface class of Linkwright (rclpy ``check_for_type_support``).
+    """Check that an object is an interface class (rclpy ``check_for_type_support``).
 
     Raises:
-        AttributeError: the object is not such a class.
+        AttributeError: the object is not an interface class.
     """
     if isinstance(getattr(interface, "TYPE_NAME", None), str):
         return
@@ -151,11 +151,12 @@ class Endpoint(Part):
     Attributes:
         name: the absolute name of the topic or service.
         type_name: such as ``sensor_msgs/msg/JointState``.
-        qos_profile: the QoS that it offers or requests.
-        type_hash: the hash of the type (``RIHS01_...``) as other nodes announce it, which takes precedence over the
-            hash of the local definition; empty if no node announces one.
-        is_listed: whether other processes see it in the graph. A transport that cannot hide endpoints shows it anyway.
-        raw: whether its payloads are bytes (CDR with its header), in which case the type need not be known here.
+        qos_profile: the offered or requested QoS.
+        type_hash: the type's hash (``RIHS01_...``) as other nodes announce it; empty if no node announces one. It takes
+            precedence over the hash of the local definition.
+        is_listed: whether other processes see the endpoint in the graph. A transport that cannot hide endpoints ignores
+            this.
+        raw: whether payloads are bytes (CDR with its header), in which case the type need not be known here.
     """
 
     kind: EndpointKind
@@ -177,7 +178,7 @@ class Endpoint(Part):
 
     @property
     def interface(self) -> Any:
-        """The interface class, created on first access."""
+        """The message or service class, created on first access."""
         if self._interface is None:
             from linkwright.messages import get_interface
 
@@ -188,7 +189,7 @@ class Endpoint(Part):
     def gid(self) -> bytes:
         """The endpoint's GID (globally unique identifier), 16 bytes.
 
-        A transport sets it to the GID of its reader or writer.
+        A transport sets this to the GID of its own reader or writer.
         """
         if not self._gid:
             self._gid = _GID_START + next(_gid_numbers).to_bytes(6, "big")
@@ -200,12 +201,12 @@ class Endpoint(Part):
 
     @property
     def node_name(self) -> str:
-        """The full name of the node it belongs to."""
+        """The full name of the node that owns the endpoint."""
         return self.node.identity.full_name
 
     @property
     def logger_name(self) -> str:
-        """The name of the logger of the node it belongs to."""
+        """The logger name of the node that owns the endpoint."""
         return self.node.logger.name
 
     def info(self) -> EndpointInfo:
@@ -215,7 +216,7 @@ class Endpoint(Part):
         )
 
     def begin(self) -> None:
-        """Add the endpoint to the graph, which connects it with the matching endpoints."""
+        """Add the endpoint to the graph, which connects matching endpoints."""
         super().begin()
         self.node.graph.add(self)
 
@@ -231,7 +232,8 @@ class MatchListener(Protocol):
     def matched(self, change: int) -> None:
         """Handle a change in the number of matching endpoints.
 
-        `change` is negative when endpoints left.
+        Args:
+            change: how many endpoints were added; negative if endpoints left.
         """
 
 
@@ -240,8 +242,8 @@ class TopicEndpoint(Endpoint, Generic[M]):
 
     Attributes:
         callback_group: the group that decides which callbacks may run at the same time as those of this endpoint.
-        events: its QoS events; None if it has no callbacks for them.
-        is_alive: for a publisher, whether it has kept its liveliness.
+        events: the endpoint's QoS events; None if there is no callback for them.
+        is_alive: for a publisher, whether its liveliness has not been lost.
     """
 
     callback_group: CallbackGroup
@@ -300,7 +302,7 @@ class ServiceEndpoint(Endpoint):
             half: ``Request`` or ``Response``.
 
         Raises:
-            TypeError: the message is not of the service's type, or is not bytes although the endpoint is raw.
+            TypeError: the message is not of the service's type, or the endpoint is raw and the message is not bytes.
         """
         wanted = bytes if self.raw else getattr(self.srv_type, half)
         if not isinstance(message, wanted):
@@ -310,13 +312,11 @@ class ServiceEndpoint(Endpoint):
 class Presence(Endpoint):
     """A subscription or client that only announces itself to other processes.
 
-    It receives no messages and sends no requests.
-
-    A bridge uses it to represent a subscription or client of another network, to which it forwards messages and
-    responses.
+    A presence receives no messages and sends no requests. A bridge uses it to represent a subscription or client of
+    another network, to which the bridge forwards messages and responses.
 
     Args:
-        node: the node that owns it.
+        node: the node that owns the presence.
         info: the description of a subscription or a client.
 
     Raises:

@@ -1,9 +1,10 @@
-"""The in-process bus, which connects the endpoints of a process, and the interface of transports.
+"""The bus that connects the endpoints of a process, and the interface of transports.
 
-A publisher and a subscription whose QoS is incompatible are not connected, and both nodes are notified of the reason.
+If the QoS of a publisher and a subscription is incompatible, the bus does not connect them, and notifies both nodes of
+the reason.
 
-Transports carry the traffic of a graph to other processes. Inside the process a message is passed as an object. A
-transport mirrors the endpoints of the process on a network; it is called only for topics and services that other
+Transports carry the traffic of a graph to other processes; inside the process a message is passed as an object. A
+transport mirrors the endpoints of the process on a network. It is called only for topics and services that other
 processes use. Transports are in the room `linkwright.wire`.
 """
 
@@ -26,12 +27,15 @@ class Transport(Protocol):
     """Mirrors the endpoints of a graph outside the process.
 
     ``open_*`` is called for each endpoint when it is created, ``close_*`` when it is destroyed; neither may block.
+
     Incoming traffic is passed to ``Subscription.receive(message, info)`` and ``Service.receive(request, reply,
     request_id)``, from any thread. For outgoing traffic the transport calls ``Publisher.set_outside`` and
-    ``Client.set_outside`` while an endpoint outside matches, and again when none does any longer. For a transient local
-    publisher it calls ``Publisher.set_outside`` from the start, because late joiners must be served. It reports the
-    number of matches with ``set_outside_count``, and the number of live publishers among them with
-    ``Subscription.set_outside_liveliness``.
+    ``Client.set_outside`` when the first endpoint outside matches, and again when none matches any longer. For a
+    transient local publisher it calls ``Publisher.set_outside`` from the start, because late joiners must be
+    served.
+
+    The transport reports the number of matches with ``set_outside_count``, and the number of live publishers among them
+    with ``Subscription.set_outside_liveliness``.
     """
 
     def open_node(self, node: NodeIdentity) -> None:
@@ -46,7 +50,7 @@ class Transport(Protocol):
     def close_publisher(self, publisher: Publisher[Any]) -> None:
         """Stop mirroring a publisher once its reliable messages are acknowledged.
 
-        It also stops if no reader is left to acknowledge them.
+        If no reader is left to acknowledge the messages, mirroring stops, too.
         """
 
     def open_subscription(self, subscription: Subscription[Any]) -> None:
@@ -74,16 +78,16 @@ class Transport(Protocol):
         """Withdraw an endpoint that was announced with `open_presence`."""
 
     def look_around(self) -> None:
-        """Discover the nodes and endpoints outside the process; called before each query for them.
+        """Discover the nodes and endpoints outside the process. Called before each query for them.
 
-        A transport need not discover them earlier. The first call may block for a few seconds at most; from then on the
-        transport discovers everything.
+        A transport need not start discovery earlier. The first call may block for a few seconds at most. After that
+        call the transport discovers everything continuously.
         """
 
     def remote_nodes(self) -> Sequence[NodeIdentity]:
         """Return the nodes of other processes that have been discovered so far.
 
-        The result includes nodes that share their name with a node of this process, regardless of earlier queries.
+        A node that has the same name as a node of this process is included.
         """
 
     def remote_endpoints(self) -> Sequence[EndpointInfo]:
@@ -95,26 +99,26 @@ class Transport(Protocol):
     def watch(self, changed: Callable[[], None]) -> None:
         """Register a callback for changes of nodes and endpoints outside.
 
-        It may be called from any thread.
+        The transport may call `changed` from any thread.
         """
 
     def watch_lost(self, lost: Callable[[EndpointInfo], None]) -> None:
         """Register a callback for lost publishers of other processes.
 
-        It may be called from any thread. A publisher is lost when its process was killed or crashed, or when it has
-        been silent for longer than it promised. This method is first called when a subscription asks for such
-        notifications (`Subscription.watch_lost`).
+        The transport may call `lost` from any thread. A publisher is lost when its process was killed or crashed, or
+        when the publisher has been silent for longer than its lease. This method is first called when a
+        subscription requests such notifications (`Subscription.watch_lost`).
         """
 
     def close(self) -> None:
-        """Leave the network; no thread or socket of the transport remains open."""
+        """Leave the network, and close all threads and sockets of the transport."""
 
 
 E = TypeVar("E", bound=Endpoint)
 
 
 class _Directory(Generic[E]):
-    """The endpoints of one kind by name; those that share a name are in order of creation."""
+    """The endpoints of one kind by name. Endpoints that share a name are in order of creation."""
 
     def __init__(self) -> None:
         self._by_name: dict[str, dict[E, None]] = {}
@@ -139,9 +143,9 @@ class _Directory(Generic[E]):
 
 
 class Bus:
-    """Holds all endpoints of the process, and connects those that match.
+    """Holds all endpoints of the process, and connects the matching ones.
 
-    It may be used from any thread.
+    All methods may be called from any thread.
     """
 
     def __init__(self) -> None:
@@ -172,8 +176,7 @@ class Bus:
     def _match(self, publisher: Publisher[Any], subscription: Subscription[Any]) -> None:
         """Connect a publisher and a subscription, or warn of incompatible QoS.
 
-        They stay unconnected if another subscription of the same node takes the publisher's type, and this one another
-        type.
+        They stay unconnected if their types differ and another subscription of the same node has the publisher's type.
         """
         kind = publisher.type_name
         others = () if subscription.type_name == kind else self._subscriptions.of(subscription.name)
@@ -183,7 +186,7 @@ class Bus:
     def remove(self, endpoint: Endpoint) -> None:
         """Remove an endpoint.
 
-        Messages that a publisher has sent are still delivered; the queue of a subscription is dropped.
+        Messages that a removed publisher has sent are still delivered; the queue of a removed subscription is dropped.
         """
         with self._lock:
             if isinstance(endpoint, Publisher):
@@ -199,12 +202,12 @@ class Bus:
                 self._clients.remove(endpoint)
 
     def publishers(self, topic: str | None = None) -> tuple[Publisher[Any], ...]:
-        """Return the publishers of a topic, or of all topics."""
+        """Return the publishers of a topic, or of all topics if `topic` is None."""
         with self._lock:
             return tuple(self._publishers) if topic is None else self._publishers.of(topic)
 
     def subscriptions(self, topic: str | None = None) -> tuple[Subscription[Any], ...]:
-        """Return the subscriptions to a topic, or to all topics."""
+        """Return the subscriptions to a topic, or to all topics if `topic` is None."""
         with self._lock:
             return tuple(self._subscriptions) if topic is None else self._subscriptions.of(topic)
 
@@ -239,9 +242,9 @@ def match(publisher: Publisher[Any], subscription: Subscription[Any]) -> None:
 
 
 def report_to_subscription(subscription: Subscription[Any], policy: str, sides: str) -> None:
-    """Report to a subscription that a publisher offers less than it requests.
+    """Report incompatible QoS to a subscription, which requests more than a publisher offers.
 
-    The report is made through the subscription's callback, or in the log.
+    The subscription's event callback receives the report; without such a callback, the report is logged.
 
     Args:
         subscription: the subscription.
@@ -257,7 +260,7 @@ def report_to_subscription(subscription: Subscription[Any], policy: str, sides: 
 
 
 def report_to_publisher(publisher: Publisher[Any], policy: str, sides: str) -> None:
-    """Report to a publisher that a subscription requests more than it offers.
+    """Report incompatible QoS to a publisher, which offers less than a subscription requests.
 
     See `report_to_subscription`.
     """
@@ -272,7 +275,7 @@ def report_to_publisher(publisher: Publisher[Any], policy: str, sides: str) -> N
 def describe_mismatch(
     publisher: str, offered: QoSProfile, subscription: str, requested: QoSProfile, policies: list[QoSPolicyKind]
 ) -> str:
-    """Describe the values that two nodes offer and request in the incompatible policies."""
+    """Return a text with the offered and requested values of the incompatible policies."""
     return f"'{publisher}' offers {_terms(offered, policies)}, '{subscription}' requests {_terms(requested, policies)}"
 
 

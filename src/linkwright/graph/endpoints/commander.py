@@ -1,7 +1,4 @@
-"""Tracks the publisher of the last command, and reports when that publisher is lost.
-
-A drive, for example, can then stop.
-"""
+"""Revocation of the last command when its publisher is lost, to stop a drive, for example."""
 
 from __future__ import annotations
 
@@ -18,11 +15,11 @@ if TYPE_CHECKING:
 
 
 class Commander:
-    """Tracks the publisher of the current command, and revokes it when the publisher is lost.
+    """Revokes the current command when the publisher of that command is lost.
 
-    A publisher that leaves the graph has ended in an orderly way, and its last command stays in force. A publisher that
-    is lost was killed, has crashed or is out of reach, so it cannot replace its command. Its loss does not affect the
-    commands of other publishers.
+    A publisher that leaves the graph has ended in an orderly way, and its last command stays in force. A lost publisher
+    was killed, has crashed or is out of reach, so it cannot replace its command. The loss of one publisher does not
+    affect the commands of the others.
 
     Args:
         revoke: called with the lost publisher, after its last command, in the same way as the subscription's callback.
@@ -36,17 +33,17 @@ class Commander:
         self._gid: bytes | None = None
 
     def tracking_callback(self, callback: Callable[[Any], object]) -> Callable[[Any, MessageInfo], object]:
-        """Return a subscription callback that notes the publisher of a command and passes the command on."""
+        """Wrap a subscription callback so that the publisher of each command is recorded first."""
         return partial(self._accept, callback)
 
     def note_publisher(self, info: MessageInfo) -> None:
-        """Note the publisher of a command that did not arrive through a callback of `tracking_callback`."""
+        """Record the publisher of a command that did not arrive through `tracking_callback`."""
         self._gid = info.publisher_gid
 
     def watch(self, subscription: Subscription[Any]) -> None:
-        """Watch for lost publishers of a subscription.
+        """Revoke the current command if its publisher is lost on this subscription.
 
-        Its callback must come from `tracking_callback` or call `note_publisher`.
+        The callback of `subscription` must come from `tracking_callback` or call `note_publisher`.
         """
         subscription.watch_lost(self._lost)
 
@@ -63,7 +60,7 @@ class Commander:
 
 
 def describe_lost_publisher(publisher: EndpointInfo) -> Any:
-    """Describe a lost publisher in a log message, with its node and topic."""
+    """Return a message that a publisher is lost, with its node and topic, for the log."""
     node = publisher.node.full_name if publisher.node is not None else ""
     if not node:
         return phrase(

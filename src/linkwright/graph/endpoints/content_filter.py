@@ -1,7 +1,7 @@
-"""Content filters: conditions on message fields, in the SQL subset of DDS (OMG DDS 1.4, annex B).
+"""Content filters: conditions on message fields, in the SQL subset of DDS 1.4 (annex B).
 
-An example: ``temperature > 20 AND header.frame_id LIKE 'base%'``. Parameters are written as ``%0``, ``%1``, ...
-Nested fields are written with dots (``header.frame_id``), and elements of arrays with an index in brackets
+An example is ``temperature > 20 AND header.frame_id LIKE 'base%'``. Parameters are written as ``%0``, ``%1``, ...
+Nested fields are written with dots (``header.frame_id``), and array elements with an index in brackets
 (``position[0]``).
 """
 
@@ -42,7 +42,7 @@ _PART = re.compile(r"(\w+)|\[(\d+)\]")
 
 
 class ContentFilterError(ValueError):
-    """Raised when a condition cannot be parsed, or names a field or parameter that does not exist."""
+    """Raised when a condition cannot be parsed, or names a missing field or parameter."""
 
 
 class ContentFilterOptions(NamedTuple):
@@ -86,7 +86,7 @@ class _Token:
 
     @property
     def word(self) -> str:
-        """The keyword in capital letters; empty for any other token."""
+        """The keyword in upper case; empty for any other token."""
         return self.text.upper() if self.kind == "name" and self.text.upper() in _WORDS else ""
 
 
@@ -222,7 +222,7 @@ class _Parser:
                 phrase("{type_name} has no field '{path}'", type_name=self._class.TYPE_NAME, path=path)
             ) from None
         except (IndexError, TypeError):
-            pass  # an element of a sequence, which may be longer in a received message
+            pass  # An array element: a received message may have a longer sequence.
         return lambda message: _reached(message, steps)
 
 
@@ -237,10 +237,10 @@ def _compared(left: _Value, relation: Callable[[Any, Any], Any], right: _Value) 
     def holds(message: Any) -> bool:
         try:
             one, other = left(message), right(message)
-            if isinstance(one, str) != isinstance(other, str):  # a string and a numeric parameter
+            if isinstance(one, str) != isinstance(other, str):  # One of them is a parameter.
                 one, other = str(one), str(other)
             return bool(relation(one, other))
-        except (IndexError, TypeError):  # the sequence is too short, or the values have no order
+        except (IndexError, TypeError):  # The sequence is too short, or the values cannot be compared.
             return False
 
     return holds
@@ -251,7 +251,7 @@ def _constant(value: Any) -> _Value:
 
 
 def _literal(text: str) -> Any:
-    """Return the value of a literal: a number, a truth value, or a string with or without quotes."""
+    """Return the value of a literal: an int, float or bool, or a string with or without quotes."""
     text = text.strip()
     if len(text) > 1 and text[0] in "'`" and text[-1] == "'":
         return text[1:-1]

@@ -1,4 +1,4 @@
-"""Detects, and logs, several publishers that command one robot at the same time."""
+"""Detection and logging of several publishers that command one robot at the same time."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ _QUIET_S = 10.0
 class Dispute:
     """Detects publishers whose commands repeatedly replace each other.
 
-    A publisher takes over when its command differs from the previous one, which another publisher sent. It is a dispute
-    when several publishers take over repeatedly for a while. These are not disputes: a handover, a stop that another
-    publisher sends at the end, and the second for which nav2's velocity smoother continues when another server begins
-    to drive.
+    A publisher takes over when its command differs from the previous one and another publisher sent that one. When
+    several publishers take over repeatedly for a while, this is a dispute. The following are not disputes: a handover;
+    a stop command from another publisher at the end; and the second for which nav2's velocity smoother continues to
+    publish after another server has begun to drive.
 
     Args:
         lasting_s: how long the parties must contradict each other, in seconds.
@@ -44,15 +44,15 @@ class Dispute:
         self.parties: frozenset[Hashable] = frozenset()
 
     def note_command(self, publisher: Hashable, command: object, now_s: float) -> bool:
-        """Note a command, and return whether it starts a dispute.
+        """Record a command, and return whether a dispute begins.
 
         Args:
             publisher: the publisher of the command.
-            command: its content; two commands that demand the same must compare equal.
-            now_s: when it arrived, in seconds.
+            command: the content of the command; two commands that demand the same must compare equal.
+            now_s: when the command arrived, in seconds.
 
         Returns:
-            Whether a dispute begins or gains a new party.
+            Whether a dispute begins, or gains a new party.
         """
         before, self._last = self._last, (publisher, command, now_s)
         if before is None or before[0] == publisher or before[1] == command:
@@ -81,7 +81,7 @@ class KnownEndpoints(Protocol):
         """Return all known endpoints."""
 
     def identities(self) -> Collection[NodeIdentity]:
-        """Return all known nodes; a name that several nodes share occurs once for each of them."""
+        """Return all known nodes. If several nodes have the same name, each is included."""
 
 
 class CommandedNode(Protocol):
@@ -99,15 +99,15 @@ class CommandedNode(Protocol):
 
 
 class DriverWatch:
-    """Warns when several nodes command the same robot at the same time, and names them.
+    """Warns when several nodes command the same robot at the same time, and names the nodes.
 
-    It warns once for each change of these nodes. Each message takes effect as it arrives, as in ROS and Gazebo: a
-    dispute is reported and not prevented.
+    There is one warning whenever the set of these nodes changes. As in ROS and Gazebo, each message takes effect as it
+    arrives: a dispute is reported, not prevented.
 
     Args:
         logger: logs the warnings.
         graph: finds the node that a publisher belongs to.
-        now_ns: returns the time that the commands follow, in nanoseconds.
+        now_ns: returns the time of the clock by which commands are timed, in nanoseconds.
     """
 
     def __init__(self, logger: Logger, graph: KnownEndpoints, now_ns: Callable[[], int]) -> None:
@@ -118,17 +118,17 @@ class DriverWatch:
 
     @classmethod
     def of(cls, node: CommandedNode) -> DriverWatch:
-        """Return a watch that uses the clock of a node and warns in its log."""
+        """Create a watch that uses the clock, the logger and the graph of a node."""
         return cls(node.get_logger(), node.graph, node.get_clock().now_ns)
 
     def note_command(self, message: Any, info: MessageInfo) -> None:
-        """Note a command message; if it has a header, only its twist is compared."""
+        """Record a command message. Of a stamped message only the twist is compared."""
         command = getattr(message, "twist", message)
         if self._dispute.note_command(info.publisher_gid, command, self._now_ns() / NANOSECONDS_PER_SECOND):
             self._warn()
 
     def _warn(self) -> None:
-        """Warn of the dispute if the nodes of at least two parties are known."""
+        """Warn of the dispute, provided that the nodes of at least two parties are known."""
         publishers = publishers_of(self._graph, self._dispute.parties)
         drivers = drivers_of(self._graph, publishers)
         if len(drivers) > 1:
@@ -154,7 +154,7 @@ def publishers_of(graph: KnownEndpoints, gids: Collection[Hashable]) -> list[End
 def drivers_of(graph: KnownEndpoints, publishers: Iterable[EndpointInfo]) -> list[str]:
     """Return the sorted full names of the nodes that own the publishers.
 
-    A name that two nodes share occurs twice. Publishers whose node is not known (yet) are left out.
+    A name that two nodes share occurs twice. Publishers whose node has not been discovered are left out.
     """
     publishing = Counter(publisher.node.full_name for publisher in publishers if publisher.node is not None)
     present = Counter(identity.full_name for identity in graph.identities())

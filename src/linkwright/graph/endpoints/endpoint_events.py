@@ -1,4 +1,4 @@
-"""QoS events of an endpoint, which are counted, timed, and queued for the user's callbacks."""
+"""QoS events of an endpoint: counting, time limits, and the queue for the user's callbacks."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ from linkwright.graph.time.clock import Alarm
 
 
 class _Watch:
-    """Calls a function each time a time limit passes without a sign of life.
+    """A watchdog that calls a function each time a time limit passes without a sign of life.
 
-    The watch starts with the first sign of life.
+    The first sign of life starts the watchdog.
     """
 
     def __init__(self, owner: EndpointEvents, limit: int, missed: Callable[[], None]) -> None:
@@ -45,18 +45,18 @@ class _Watch:
         self._lock = threading.Lock()
 
     def restart(self) -> None:
-        """Note a sign of life, from any thread, which restarts the time limit."""
+        """Restart the time limit after a sign of life. Callable from any thread."""
         with self._lock:
             self._last_ns = self._owner.node.timebase.steady_ns()
             self._arm()
 
     def resume(self) -> None:
-        """Continue watching with the owner's current dispatcher, if there has been a sign of life."""
+        """Continue with the owner's current dispatcher, if there has been a sign of life."""
         with self._lock:
             self._arm()
 
     def stop(self) -> None:
-        """Stop watching, until the next sign of life."""
+        """Stop the watchdog until the next sign of life."""
         with self._lock:
             if self._alarm is not None:
                 self._alarm.cancel()
@@ -80,7 +80,7 @@ class _Watch:
 
 
 class EndpointEvents(Entity):
-    """The QoS events of an endpoint, which wait in a queue for their callbacks as messages do."""
+    """The QoS events of an endpoint, which are queued for their callbacks as messages are."""
 
     _deadline_info: type[EventCount]
 
@@ -109,11 +109,10 @@ class EndpointEvents(Entity):
         self._notify(self._callbacks.matched, QoSMatchedInfo(total, max(change, 0), self._current, change))
 
     def report_incompatible(self, policy: str) -> bool:
-        """Note that an endpoint of the other side has incompatible QoS.
+        """Count an endpoint with incompatible QoS, and queue the callback for it, if there is one.
 
         Returns:
-            Whether to leave out the warning in the log, because a callback is called instead or the user disabled the
-            default.
+            Whether the warning in the log is omitted, because there is a callback or the user disabled the default.
         """
         total = self._count("incompatible", 1)
         if self._callbacks.incompatible_qos is None:
@@ -129,7 +128,7 @@ class EndpointEvents(Entity):
     def take(self) -> Callable[[], object] | None:
         """Remove the oldest event from the queue and return the call of its callback.
 
-        The result is None if there is none.
+        Returns None if the queue is empty.
         """
         return self._next_of(self._waiting)
 
@@ -141,7 +140,7 @@ class EndpointEvents(Entity):
         self._waiting.clear()
 
     def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
-        """Set the dispatcher that runs the callbacks and watches the time limits."""
+        """Set the dispatcher that runs the callbacks and monitors the time limits."""
         for watch in self._watches:
             watch.stop()
         super().set_dispatcher(dispatcher)
@@ -179,7 +178,7 @@ class SubscriptionEvents(EndpointEvents):
         self._outside = (0, 0)
 
     def received(self) -> None:
-        """Note that a message arrived, from this process or another."""
+        """Record the arrival of a message, from this process or another."""
         if self._deadline is not None:
             self._deadline.restart()
 
@@ -188,12 +187,12 @@ class SubscriptionEvents(EndpointEvents):
         self._notify(self._message_lost, QoSMessageLostInfo(self._count("lost", count), count))
 
     def set_outside_liveliness(self, alive: int, not_alive: int) -> None:
-        """Set how many publishers of other processes are alive, and how many have lost their liveliness."""
+        """Set the numbers of alive and not alive publishers in other processes."""
         (alive_before, not_alive_before), self._outside = self._outside, (alive, not_alive)
         self.liveliness(alive - alive_before, not_alive - not_alive_before)
 
     def liveliness(self, alive_change: int, not_alive_change: int) -> None:
-        """Note that publishers appeared or left, became alive, or lost their liveliness."""
+        """Update the numbers of publishers that are alive and not alive, and notify the callback."""
         if not alive_change and not not_alive_change:
             return
         self._alive += alive_change
@@ -234,13 +233,13 @@ class PublisherEvents(EndpointEvents):
         return bool(self._watches)
 
     def published(self) -> None:
-        """Note that a message was published."""
+        """Record that a message was published."""
         if self._deadline is not None:
             self._deadline.restart()
         self.assert_liveliness()
 
     def assert_liveliness(self) -> None:
-        """Note that the publisher asserted its liveliness."""
+        """Record that the publisher asserted its liveliness."""
         if self._lease is not None:
             self._lease.restart()
             if not self._is_alive:
@@ -248,9 +247,9 @@ class PublisherEvents(EndpointEvents):
                 self._liveliness_changed(1)
 
     def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
-        """Set the dispatcher that runs the callbacks and watches the time limits.
+        """Set the dispatcher that runs the callbacks and monitors the time limits.
 
-        This counts as a sign of life.
+        Setting a dispatcher counts as a sign of life.
         """
         super().set_dispatcher(dispatcher)
         if self._lease is not None:

@@ -1,8 +1,6 @@
-"""QoS events as callbacks receive them.
+"""QoS events as callbacks receive them, with the class names of ``rclpy.event_handler``.
 
 The events are incompatible QoS, missed deadlines, liveliness, lost messages and matches.
-
-The classes are named after those of ``rclpy.event_handler``.
 """
 
 from __future__ import annotations
@@ -19,7 +17,7 @@ EventCallback = Callable[[Any], object]
 
 @dataclass(frozen=True, slots=True)
 class EventCount:
-    """How often an event occurred.
+    """The number of times that an event has occurred.
 
     Attributes:
         total_count: the count since the endpoint was created.
@@ -31,32 +29,32 @@ class EventCount:
 
 
 class QoSRequestedDeadlineMissedInfo(EventCount):
-    """How often no message was received within the deadline."""
+    """The number of times that no message was received within the deadline."""
 
     __slots__ = ()
 
 
 class QoSOfferedDeadlineMissedInfo(EventCount):
-    """How often no message was published within the deadline."""
+    """The number of times that no message was published within the deadline."""
 
     __slots__ = ()
 
 
 class QoSLivelinessLostInfo(EventCount):
-    """How often a publisher failed to assert its liveliness within the lease."""
+    """The number of times that a publisher failed to assert its liveliness within the lease."""
 
     __slots__ = ()
 
 
 class QoSMessageLostInfo(EventCount):
-    """How many messages were lost."""
+    """The number of lost messages."""
 
     __slots__ = ()
 
 
 @dataclass(frozen=True, slots=True)
 class QoSRequestedIncompatibleQoSInfo(EventCount):
-    """How many endpoints had incompatible QoS, and the policy that was incompatible last."""
+    """The number of endpoints with incompatible QoS, and the policy that was incompatible last."""
 
     last_policy_kind: QoSPolicyKind
 
@@ -66,7 +64,7 @@ QoSOfferedIncompatibleQoSInfo = QoSRequestedIncompatibleQoSInfo
 
 @dataclass(frozen=True, slots=True)
 class QoSLivelinessChangedInfo:
-    """How many of the publishers are alive, and how many are not."""
+    """The numbers of publishers that are alive and not alive."""
 
     alive_count: int
     not_alive_count: int
@@ -76,7 +74,7 @@ class QoSLivelinessChangedInfo:
 
 @dataclass(frozen=True, slots=True)
 class QoSMatchedInfo(EventCount):
-    """How many endpoints have matched in total, and how many match currently."""
+    """The number of endpoints that have matched in total, and of those that match currently."""
 
     current_count: int
     current_count_change: int
@@ -123,14 +121,15 @@ class EventHandler(NamedTuple):
 class EndpointEventCallbacks:
     """A user's callbacks for the events of a publisher or a subscription.
 
-    Each receives the info object of its event.
+    Each callback receives the info object of its event.
 
     Attributes:
-        deadline: no message was received, or published, within the deadline.
-        incompatible_qos: a subscription requests more than is offered, or a publisher offers less than is requested.
-        liveliness: publishers became alive or lost their liveliness; for a publisher, that it lost its own.
+        deadline: called when no message was received, or published, within the deadline.
+        incompatible_qos: called when an endpoint with incompatible QoS is found: a subscription that requests more than
+            this publisher offers, or a publisher that offers less than this subscription requests.
+        liveliness: called when publishers became alive or lost their liveliness; for a publisher, when it lost its own.
         incompatible_type: accepted as in rclpy but never called; topics with several types are reported in the log.
-        matched: the number of matching endpoints changed.
+        matched: called when the number of matching endpoints changed.
         use_default_callbacks: whether incompatible QoS is logged if there is no callback for it.
     """
 
@@ -162,7 +161,7 @@ class SubscriptionEventCallbacks(EndpointEventCallbacks):
     """A user's callbacks for the events of a subscription.
 
     Attributes:
-        message_lost: messages were lost on the network, or dropped from the full queue.
+        message_lost: called when messages were lost on the network, or dropped from the full queue.
     """
 
     message_lost: EventCallback | None = None

@@ -27,10 +27,10 @@ M = TypeVar("M")
 class Publisher(TopicEndpoint[M]):
     """Publishes messages on a topic, from any thread (rclpy ``Publisher``).
 
-    ``Node.create_publisher`` creates it.
+    ``Node.create_publisher`` creates publishers.
 
-    Inside the process a message is not copied: once it is published, neither the publisher nor its receivers may change
-    it. For nodes that may change their messages (`NodeHandle.copies_messages`) a message is serialized when it is
+    Inside the process a message is not copied: after publishing, neither the publisher nor the receivers may change the
+    message. If a node may change its messages (`NodeHandle.copies_messages`), each message is serialized when it is
     published, and deserialized for each subscription.
     """
 
@@ -68,7 +68,7 @@ class Publisher(TopicEndpoint[M]):
         self._copies = node.copies_messages
         self._is_plain = not keeps and not self._copies
         if event_callbacks is not None:
-            from linkwright.graph.endpoints.endpoint_events import PublisherEvents  # here: few use events
+            from linkwright.graph.endpoints.endpoint_events import PublisherEvents  # few use events
 
             self.events = PublisherEvents(self, event_callbacks, self._liveliness_changed)
             self._is_plain = self._is_plain and not self.events.wants_messages
@@ -76,10 +76,10 @@ class Publisher(TopicEndpoint[M]):
     def publish(self, msg: M | bytes) -> None:
         """Send a message to all matching subscriptions, in the order of their creation.
 
-        Callbacks run later.
+        The callbacks of the subscriptions run later.
 
         Args:
-            msg: the message, or its CDR bytes with their header.
+            msg: the message, or its CDR bytes including the header.
 
         Raises:
             TypeError: the message is not of the publisher's type.
@@ -98,13 +98,13 @@ class Publisher(TopicEndpoint[M]):
 
     @property
     def event_handlers(self) -> list[EventHandler]:
-        """The publisher's event handlers, including those that only log."""
+        """The publisher's event handlers, including handlers that only log."""
         from linkwright.graph.endpoints.event_types import PublisherEventCallbacks
 
         return (self.event_callbacks or PublisherEventCallbacks()).handlers()
 
     def get_subscription_count(self) -> int:
-        """Return the number of subscriptions that receive the messages, inside the process and outside."""
+        """Return the number of matching subscriptions, inside the process and outside."""
         return len(self._matched) + self._outside_count
 
     def assert_liveliness(self) -> None:
@@ -122,7 +122,7 @@ class Publisher(TopicEndpoint[M]):
     def wait_for_all_acked(self, timeout: Duration | None = None) -> bool:
         """Block until all reliable subscriptions have acknowledged the published messages.
 
-        Subscriptions of this process receive messages immediately.
+        Subscriptions of this process need no acknowledgement, because they receive messages immediately.
 
         Args:
             timeout: the maximum wait; negative or None for no limit.
@@ -140,7 +140,7 @@ class Publisher(TopicEndpoint[M]):
     def connect(self, subscription: Subscription[Any]) -> None:
         """Connect a subscription of this process.
 
-        A transient local subscription first receives the messages kept for late joiners.
+        A transient local subscription first receives the messages stored for late joiners.
         """
         receive = subscription.receiver(self, self.lifespan_ns)
         with self._lock:
@@ -164,7 +164,7 @@ class Publisher(TopicEndpoint[M]):
             self.events.matched(-1)
 
     def begin(self) -> None:
-        """Add the publisher to the graph, after its events."""
+        """Set up the publisher's events, then add the publisher to the graph."""
         if self.events is not None:
             self.node.add(self.events)
         super().begin()
@@ -180,20 +180,18 @@ class Publisher(TopicEndpoint[M]):
         self.outside = None
 
     def local_subscriptions(self) -> tuple[Subscription[Any], ...]:
-        """Return the subscriptions of this process that receive the messages."""
+        """Return the subscriptions of this process that are connected to the publisher."""
         return tuple(self._matched)
 
     def hold_for_outside(self, sent: Callable[[float | None], bool]) -> None:
-        """Hold messages until `set_outside` is called.
-
-        The transport calls this, and `set_outside` soon after.
+        """Hold messages until `set_outside` is called. The transport calls both, in this order.
 
         Under ROS 2 a subscription that has been discovered receives every message of a publisher, from the first. Here
-        the transport creates the writer in its own thread, a moment after the publisher.
+        the transport creates the writer in its own thread, a moment after the publisher, so earlier messages are held.
 
         Args:
             sent: waits until `set_outside` was called, for at most the given seconds (None for no limit); returns
-                whether it was.
+                whether it was called.
         """
         with self._lock:
             if self._kept is None and self.outside is None:
@@ -208,7 +206,7 @@ class Publisher(TopicEndpoint[M]):
     ) -> None:
         """Set or clear the function that sends messages to other processes. Called by the transport.
 
-        Messages that are held, or kept for late joiners, are sent first: none is lost, none is sent twice.
+        Messages that are held, or stored for late joiners, are sent first. No message is lost or sent twice.
 
         Args:
             send: called in the publishing thread with each message, or its CDR bytes if those were published; None
@@ -221,7 +219,7 @@ class Publisher(TopicEndpoint[M]):
             if send is not None and (self.outside is None or held is not None):
                 for message in self._unexpired_messages() if held is None else held:
                     what = f"sending the messages of topic '{self.name}'"
-                    run_logged(self.node.logger, what, partial(send, message))  # `publish` has returned
+                    run_logged(self.node.logger, what, partial(send, message))  # `publish` has returned: just log
             self.outside = send
             self._acknowledged = acknowledged if send is not None else None
 
@@ -247,7 +245,7 @@ class Publisher(TopicEndpoint[M]):
                 subscription.events.liveliness(change, -change)
 
     def _unexpired_messages(self) -> list[Any]:
-        """Return the messages kept for late joiners whose lifespan has not expired."""
+        """Remove expired messages from those stored for late joiners, and return the remaining ones."""
         if not self._kept:
             return []
         if self.lifespan_ns is not None:

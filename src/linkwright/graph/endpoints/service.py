@@ -1,6 +1,6 @@
 """Services and clients.
 
-Requests wait in a queue until a dispatcher runs the callback, which returns the response.
+Requests are queued until a dispatcher runs the callback, which returns the response.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ EVENT_TOPIC_SUFFIX = "/_service_event"
 
 
 class ServiceIntrospectionState(IntEnum):
-    """How much of each request is published for introspection, with the numbers and names of rclpy."""
+    """Which parts of requests are published for introspection, with rclpy's numbers and names."""
 
     OFF = 0
     METADATA = 1
@@ -47,7 +47,7 @@ class EventType(IntEnum):
 
 
 class RequestId(NamedTuple):
-    """The identification of a request and its client.
+    """The identifier of a request: its client and its sequence number.
 
     Attributes:
         client_gid: the GID of the client, 16 bytes.
@@ -62,7 +62,7 @@ NO_REQUEST_ID = RequestId(bytes(16), 0)
 
 
 class ServiceEvents:
-    """Publishes the introspection events of the requests of a client or service.
+    """Publishes introspection events for the requests of a client or service.
 
     Args:
         endpoint: the client or service, whose node owns the publisher.
@@ -98,7 +98,7 @@ class ServiceEvents:
         self._publisher.publish(event)
 
     def close(self) -> None:
-        """Destroy the publisher."""
+        """Destroy the publisher of the events."""
         self._publisher.destroy()
 
 
@@ -156,7 +156,8 @@ class Service(IntrospectedEndpoint, Entity, Generic[Request, Response]):
     """Answers the requests to a service (rclpy ``Service``); created by ``Node.create_service``.
 
     Args:
-        callback: called with the request and an empty response, returns the response; it may be a coroutine function.
+        callback: a function or coroutine function that is called with the request and an empty response, and returns
+            the response.
         replying: whether the callback receives, instead of the empty response, a function that sends the response and
             may be called later.
         raw: whether requests and responses are bytes (CDR with its header), which requires `replying`.
@@ -197,10 +198,10 @@ class Service(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         Args:
             request: the request.
             reply: called with the response, from any thread, or never.
-            request_id: the client and the request's number, for service introspection.
+            request_id: the request's client and sequence number, for service introspection.
         """
         if self._waiting is _NO_REQUESTS:
-            vars(self).setdefault("_waiting", deque(maxlen=self.qos_profile.queue_length))  # atomic
+            vars(self).setdefault("_waiting", deque(maxlen=self.qos_profile.queue_length))  # `setdefault` is atomic
         self._waiting.append((request, reply, request_id))
         self.announce()
 
@@ -211,7 +212,7 @@ class Service(IntrospectedEndpoint, Entity, Generic[Request, Response]):
     def take(self) -> Callable[[], object] | None:
         """Remove the oldest request from the queue and return the call that answers it.
 
-        The result is None if there is none.
+        Returns None if the queue is empty.
         """
         waiting = self._next_of(self._waiting)
         return None if waiting is None else partial(self._answer, *waiting)
@@ -221,7 +222,7 @@ class Service(IntrospectedEndpoint, Entity, Generic[Request, Response]):
 
         Args:
             response: the response.
-            header: the reply callable that came with the request, which takes the place of rclpy's request header.
+            header: the reply callable that was received with the request; it replaces rclpy's request header.
 
         Raises:
             TypeError: the response is not of the service's type.
@@ -230,7 +231,7 @@ class Service(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         header(copy_of(response) if self.node.copies_messages else response)
 
     def retire(self) -> None:
-        """Remove the service from the graph; queued requests get no response."""
+        """Remove the service from the graph, and drop queued requests without a response."""
         super().retire()
         self._waiting.clear()
         self.end_introspection()
@@ -262,17 +263,17 @@ M = TypeVar("M")
 
 
 def copy_of(message: M) -> M:
-    """Return a deep copy of a message, made by serializing it.
+    """Return a deep copy of a message, made by serialization and deserialization.
 
     Raises:
-        MessageDataError: MSG202, the value of a field does not fit the type.
+        MessageDataError: MSG202, the value of a field does not fit its type.
     """
     copied: Any = message
     return deserialize(serialize(copied), type(copied))  # type: ignore[no-any-return]  # the same type
 
 
 class OutsideService(Protocol):
-    """A server in another process, as a client calls it."""
+    """A service server in another process, as seen by a client."""
 
     def send(self, request: Any, answer: Callable[[Any], None], number: int) -> Callable[[], None]:
         """Send a request.
@@ -290,9 +291,9 @@ class OutsideService(Protocol):
 class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
     """Calls a service (rclpy ``Client``); created by ``Node.create_client``.
 
-    Requests that are made before a server exists wait for one; at most as many as the QoS depth are kept. If several
-    servers have the name, the oldest of this process is called, and a server of another process only if this process
-    has none.
+    Requests that are made before a server is available are queued; the QoS depth limits their number. If several
+    servers have the name, the oldest one of this process is called. A server of another process is called only if
+    this process has none.
     """
 
     kind = EndpointKind.CLIENT
@@ -309,7 +310,7 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
     ) -> None:
         Entity.__init__(self, node, callback_group)
         self._describe(node, srv_type, srv_name, qos_profile)
-        self.unblockable = not node.strict_callback_groups  # see `linkwright.graph.loop.future`
+        self.unblockable = not node.strict_callback_groups  # see `linkwright.graph.loop.future` for the reason
         self.raw = raw
         self.outside: OutsideService | None = None
         """The server in another process; None while there is none. See `set_outside`."""
@@ -341,12 +342,15 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
             timeout_sec: the maximum wait, in seconds; None for no limit.
 
         Returns:
-            Whether a server is available. False also if the graph is closed in the meantime.
+            Whether a server is available. Closing the graph ends the wait with False.
         """
         return self.node.graph.wait_until(self.service_is_ready, timeout_sec)
 
     def call_async(self, request: Request) -> Future[Response]:
-        """Send a request; the future gets the response.
+        """Send a request without blocking.
+
+        Returns:
+            A future that gets the response.
 
         Raises:
             TypeError: the request is not of the service's type.
@@ -379,7 +383,7 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
 
         Raises:
             TypeError: the request is not of the service's type.
-            RuntimeError: the calling thread is the one that would have to receive the response.
+            RuntimeError: the calling thread runs the event loop that would have to receive the response.
         """
         is_own_thread = getattr(self.dispatcher, "is_own_thread", None)
         if is_own_thread is not None and is_own_thread():
@@ -403,14 +407,17 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         if forget is not None:
             forget()
 
-    # --- for dispatchers ---------------------------------------------------------------------------------------------
+    # --- called by dispatchers ---------------------------------------------------------------------------------------
 
     def has_work(self) -> bool:
         """Return whether responses are queued."""
         return bool(self._endings)
 
     def take(self) -> Callable[[], object] | None:
-        """Return the call that completes the future of the oldest response; None if there is none."""
+        """Remove the oldest response from the queue and return the call that completes its future.
+
+        Returns None if the queue is empty.
+        """
         return self._next_of(self._endings)
 
     def retire(self) -> None:
@@ -426,17 +433,17 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         self.outside = None
         self.end_introspection()
 
-    # --- for the bus and the transport ---------------------------------------------------------------------------
+    # --- called by the bus and the transport ---------------------------------------------------------------------
 
     def set_server(self, server: Service[Request, Response] | None) -> None:
-        """Set the service of this process that requests go to; None if there is none."""
+        """Set the service of this process that receives the requests; None if there is none."""
         self._server = server
         self._send_waiting()
 
     def set_outside(self, outside: OutsideService | None) -> None:
-        """Set the server in another process, which is called if this process has none.
+        """Set the server in another process; None if there is none. Called by the transport.
 
-        The transport calls this. None means that there is no such server.
+        The client uses this server only if this process has none.
         """
         self.outside = outside
         self._send_waiting()
@@ -450,7 +457,7 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
                 future, request = self._unsent.popleft()
             try:
                 was_sent = self._send(future, request)
-            except LinkwrightError as error:  # the caller has returned
+            except LinkwrightError as error:  # the caller has returned, so the future gets the error
                 self._end(future, partial(future.fail, error, self.dispatcher))
                 continue
             if not was_sent:
@@ -477,7 +484,7 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         self._end(future, partial(self._hand_over, future, request_id, response))
 
     def _end(self, future: Future[Response], end: Callable[[], None]) -> None:
-        """Queue a callback that completes a future, unless the request was cancelled."""
+        """Queue the function `end`, which completes a future, unless the request was cancelled."""
         if self._pending.pop(future, None) is not None:
             self._endings.append(end)
             self.announce()
@@ -489,4 +496,4 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
 
 
 def _do_nothing() -> None:
-    """Do nothing: a request to a service of this process needs no cancellation."""
+    """Do nothing: a request to a service of this process cannot be cancelled."""

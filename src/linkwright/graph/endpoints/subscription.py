@@ -1,4 +1,4 @@
-"""Subscriptions, whose messages wait in a queue until a dispatcher runs the callback."""
+"""Subscriptions, whose messages are queued until a dispatcher runs the callback."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class QueuedMessage:
     Attributes:
         message: the message, or its CDR bytes.
         info: the publisher and times of the message.
-        expires_ns: the steady time at which its lifespan ends, in nanoseconds; None for no lifespan.
+        expires_ns: the steady time at which the message's lifespan ends, in nanoseconds; None for no lifespan.
     """
 
     message: Any
@@ -41,7 +41,7 @@ class QueuedMessage:
 
 
 class CallbackType(Enum):
-    """The arguments that a callback takes (rclpy ``Subscription.CallbackType``)."""
+    """Which arguments a callback takes (rclpy ``Subscription.CallbackType``)."""
 
     MessageOnly = 0
     WithMessageInfo = 1
@@ -50,10 +50,10 @@ class CallbackType(Enum):
 class Subscription(TopicEndpoint[M], Entity):
     """Receives the messages of a topic (rclpy ``Subscription``).
 
-    Created by ``Node.create_subscription``.
+    ``Node.create_subscription`` creates subscriptions.
 
-    Messages wait in a queue whose length follows from the QoS history and depth. When it is full, the oldest message is
-    dropped.
+    Messages are queued. The length of the queue follows from the QoS history and depth. When the queue is full, the
+    oldest message is dropped.
     """
 
     kind = EndpointKind.SUBSCRIPTION
@@ -83,7 +83,7 @@ class Subscription(TopicEndpoint[M], Entity):
         self.event_callbacks = event_callbacks
         self.events: SubscriptionEvents | None = None
         if event_callbacks is not None:
-            from linkwright.graph.endpoints.endpoint_events import SubscriptionEvents  # here: few use events
+            from linkwright.graph.endpoints.endpoint_events import SubscriptionEvents  # few use events
 
             self.events = SubscriptionEvents(self, event_callbacks)
         self._publishers: dict[TopicEndpoint[Any], None] = {}
@@ -126,22 +126,22 @@ class Subscription(TopicEndpoint[M], Entity):
 
     @property
     def event_handlers(self) -> list[EventHandler]:
-        """The subscription's event handlers, including those that only log."""
+        """The subscription's event handlers, including handlers that only log."""
         from linkwright.graph.endpoints.event_types import SubscriptionEventCallbacks
 
         return (self.event_callbacks or SubscriptionEventCallbacks()).handlers()
 
     def get_publisher_count(self) -> int:
-        """Return the number of publishers that the subscription receives from."""
+        """Return the number of matching publishers, inside the process and outside."""
         return len(self._publishers) + self._outside_count
 
     @property
     def is_cft_enabled(self) -> bool:
-        """Whether a content filter is in force."""
+        """Whether a content filter is set."""
         return self._filter is not None
 
     def get_content_filter(self) -> ContentFilterOptions:
-        """Return the content filter in force; an empty one if there is none."""
+        """Return the current content filter; if there is none, one with an empty expression."""
         from linkwright.graph.endpoints.content_filter import ContentFilterOptions
 
         return ContentFilterOptions("") if self._filter is None else self._filter.options
@@ -151,10 +151,10 @@ class Subscription(TopicEndpoint[M], Entity):
 
         Args:
             filter_expression: the condition, see `ContentFilter`; an empty one removes the filter.
-            expression_parameters: the values of ``%0``, ``%1``, ... in it.
+            expression_parameters: the values of ``%0``, ``%1``, ... in the condition.
 
         Raises:
-            ContentFilterError: the condition cannot be parsed, or a field or parameter of it does not exist.
+            ContentFilterError: the condition cannot be parsed, or names a field or parameter that does not exist.
         """
         from linkwright.graph.endpoints.content_filter import ContentFilter, ContentFilterOptions
 
@@ -164,14 +164,14 @@ class Subscription(TopicEndpoint[M], Entity):
     def watch_lost(self, lost: Callable[[EndpointInfo], object]) -> None:
         """Register a callback for lost publishers of other processes.
 
-        It runs in the same way as the subscription's callback. A publisher is lost when its process was killed, crashed
-        or is out of reach. Its messages are delivered first.
+        The callback runs in the same way as the subscription's callback. A publisher is lost when its process was
+        killed, crashed or is out of reach. Messages of the lost publisher are delivered first.
         """
         self._on_lost = lost
         self.node.graph.watch_lost()
 
     def publisher_lost(self, publisher: EndpointInfo) -> None:
-        """Queue the notification of a lost publisher outside the process.
+        """Queue the notification that a publisher of another process is lost.
 
         The graph calls this, from any thread.
         """
@@ -180,10 +180,12 @@ class Subscription(TopicEndpoint[M], Entity):
             self.announce()
 
     def deliver_in_batches(self) -> None:
-        """From now on, pass all queued messages to the callback, one after the other, in a single call.
+        """Pass all queued messages to the callback in a single dispatched call, from now on.
 
-        This is for short callbacks with many messages, such as those of tf. With one message per call, a loop that has
-        other work would lag behind by the length of the queue.
+        The callback is still called once per message. Batches are meant for short callbacks with many messages, such as
+        those
+        of tf: with one message per dispatched call, a loop that has other work would lag behind by the length of the
+        queue.
         """
         self._together = True
 
@@ -196,7 +198,7 @@ class Subscription(TopicEndpoint[M], Entity):
             self.events.set_outside_liveliness(alive, not_alive)
 
     def lost_outside(self, count: int) -> None:
-        """Count lost messages of other processes. Called by the transport."""
+        """Count lost messages from other processes. Called by the transport."""
         if self.events is not None:
             self.events.count_lost(count)
 
@@ -205,14 +207,14 @@ class Subscription(TopicEndpoint[M], Entity):
 
         Args:
             message: the message, or its CDR bytes, which are deserialized just before the callback is called.
-            info: its metadata; required for messages of other processes.
+            info: the message's metadata; required for messages of other processes.
         """
         intake = self.node.message_filter
         if intake is None or intake(self, message):
             self.enqueue(message, info)
 
     def enqueue(self, message: M | bytes | QueuedMessage, info: MessageInfo | None = None) -> None:
-        """Queue a message for the callback without asking the node's `message_filter`; see `receive`."""
+        """Queue a message for the callback, bypassing the node's `message_filter`; see `receive`."""
         if self._filter is not None and not self._passes_filter(message, self._filter):
             return
         if self.events is not None:
@@ -229,7 +231,7 @@ class Subscription(TopicEndpoint[M], Entity):
 
         Args:
             publisher: the publisher.
-            lifespan_ns: the lifespan of its messages, in nanoseconds; None for no limit.
+            lifespan_ns: the lifespan of the publisher's messages, in nanoseconds; None for no limit.
         """
         if not self._wants_info and lifespan_ns is None and self.events is None:
             return self.receive
@@ -247,14 +249,14 @@ class Subscription(TopicEndpoint[M], Entity):
         return receive
 
     def connected(self, publisher: TopicEndpoint[Any]) -> None:
-        """Note that a publisher of this process was connected. Called by the publisher."""
+        """Record that a publisher of this process was connected. Called by the publisher."""
         self._publishers[publisher] = None
         if self.events is not None:
             self.events.matched(1)
             self.events.liveliness(int(publisher.is_alive), int(not publisher.is_alive))
 
     def disconnected(self, publisher: TopicEndpoint[Any]) -> None:
-        """Note that a publisher of this process was disconnected. Called by the publisher."""
+        """Record that a publisher of this process was disconnected. Called by the publisher."""
         if self._publishers.pop(publisher, self) is None and self.events is not None:
             self.events.matched(-1)
             self.events.liveliness(-int(publisher.is_alive), -int(not publisher.is_alive))
@@ -266,9 +268,8 @@ class Subscription(TopicEndpoint[M], Entity):
     def take(self) -> Callable[[], object] | None:
         """Remove the oldest message from the queue and return the call of its callback.
 
-        The result is None if there is nothing to call.
-
-        When no messages are left, the notification of a lost publisher is next.
+        When no messages are left, the notification of a lost publisher is next. Returns None if there is nothing to
+        call.
         """
         self._announced = False
         waiting = self._waiting
@@ -288,7 +289,7 @@ class Subscription(TopicEndpoint[M], Entity):
             self.events.set_dispatcher(dispatcher)
 
     def discard(self) -> None:
-        """Drop the messages in the queue."""
+        """Drop the queued messages."""
         self._waiting.clear()
         self._lost.clear()
 
@@ -317,7 +318,7 @@ class Subscription(TopicEndpoint[M], Entity):
     def _prepare_call(self, item: Any) -> Callable[[], object] | None:
         """Return the call of the callback for CDR bytes or for a message with metadata.
 
-        The result is None if there is nothing to call.
+        Returns None if there is nothing to call, for example because the message has expired.
         """
         if type(item) is bytes and not self._wants_info and not self.raw:
             message = self._read(item)
@@ -346,7 +347,7 @@ class Subscription(TopicEndpoint[M], Entity):
     def _passes_filter(self, message: Any, content_filter: ContentFilter) -> bool:
         """Return whether the content filter accepts a message.
 
-        A message that cannot be decoded is accepted, and reported later.
+        A message that cannot be decoded is accepted here; the error is reported later.
         """
         inner = message.message if type(message) is QueuedMessage else message
         if isinstance(inner, (bytes, bytearray, memoryview)):
@@ -357,7 +358,7 @@ class Subscription(TopicEndpoint[M], Entity):
         return content_filter.accepts(inner)
 
     def _read(self, data: bytes | bytearray | memoryview) -> Any:
-        """Decode a message; if that fails, log it once and return None."""
+        """Decode a message. If that fails, log the error once and return None."""
         try:
             return deserialize(data, self.msg_type)
         except LinkwrightError as error:

@@ -1,4 +1,4 @@
-"""The base of all executors (rclpy ``executors.Executor``): nodes, ready work, tasks, shutdown."""
+"""The base class of all executors (rclpy ``Executor``): nodes, ready work, tasks, shutdown."""
 
 from __future__ import annotations
 
@@ -35,17 +35,17 @@ _POSTPONED_AT_MOST = 2
 
 
 class Context(Protocol):
-    """A context that determines whether the program continues (rclpy ``Context``)."""
+    """A context, whose shutdown ends spinning (rclpy ``Context``)."""
 
     def ok(self) -> bool:
-        """Return whether the program should continue."""
+        """Return whether the context is initialized and not shut down."""
 
     def on_shutdown(self, callback: Callable[[], None]) -> None:
         """Register a callback for the shutdown of the context."""
 
 
 class SpunNode(Protocol):
-    """The interface of a node that an executor needs."""
+    """The part of a node that an executor needs."""
 
     @property
     def handle(self) -> NodeHandle:
@@ -53,9 +53,9 @@ class SpunNode(Protocol):
 
 
 def deadline_after(timeout_sec: float | None) -> int | None:
-    """Return the value of ``time.monotonic_ns`` at which a timeout ends.
+    """Return the value of ``time.monotonic_ns`` at which a timeout, in seconds, ends.
 
-    Returns None if the timeout is None or negative, which means no limit.
+    Returns None, which means no limit, if the timeout is None or negative.
     """
     if timeout_sec is None or timeout_sec < 0:
         return None
@@ -65,11 +65,11 @@ def deadline_after(timeout_sec: float | None) -> int | None:
 class Executor:
     """Runs the callbacks of nodes; the base class of all executors, including users' own.
 
-    A user's executor defines `spin_once`, and gets its work from `wait_for_ready_callbacks`. As in rclpy the class is
+    A user's executor defines `spin_once`, which gets its work from `wait_for_ready_callbacks`. As in rclpy the class is
     not abstract, and may be instantiated.
 
     Args:
-        context: spinning ends when this context is no longer ok; None for an executor without a context.
+        context: the context whose shutdown ends spinning; None for an executor without a context.
     """
 
     def __init__(self, *, context: Context | None = None) -> None:
@@ -98,7 +98,7 @@ class Executor:
     def add_node(self, node: SpunNode) -> bool:
         """Run the callbacks of a node from now on.
 
-        Returns False if the executor already does, or was shut down.
+        Returns False if the executor already has the node, or was shut down.
         """
         with self._nodes_lock:
             if self._is_shutdown or node.handle in self._nodes:
@@ -114,7 +114,7 @@ class Executor:
     def remove_node(self, node: SpunNode) -> None:
         """Stop running the callbacks of a node.
 
-        Callbacks that are due wait for the node's next executor.
+        Pending callbacks stay queued for the node's next executor.
         """
         with self._nodes_lock:
             if self._nodes.pop(node.handle, None) is None:
@@ -128,7 +128,7 @@ class Executor:
             return list(self._nodes.values())
 
     def wake(self) -> None:
-        """End the wait for work, so that everything is checked again."""
+        """End the current wait for work, so that the ready work and the condition are checked again."""
         self._release_blocked()
         self._work.wake()
 
@@ -142,12 +142,12 @@ class Executor:
     def create_task(self, callback: Coroutine[Any, Any, T], *args: Any, **kwargs: Any) -> Task[T]: ...
 
     def create_task(self, callback: Any, *args: Any, **kwargs: Any) -> Task[Any]:
-        """Run a callable or a coroutine while the executor spins, after the work that is already ready.
+        """Run a callable or coroutine while the executor spins, after the work that is ready now.
 
         Args:
             callback: a callable, a coroutine function or a coroutine.
-            args: positional arguments for it.
-            kwargs: keyword arguments for it.
+            args: positional arguments for `callback`.
+            kwargs: keyword arguments for `callback`.
         """
         task: Task[Any] = Task(callback, args, kwargs, executor=self)
         self._work.add(task)
@@ -166,14 +166,16 @@ class Executor:
         """Wait for a callback and run it.
 
         Args:
-            timeout_sec: the maximum wait, in seconds; 0 for no wait, None or a negative number for no limit.
+            timeout_sec: the maximum wait, in seconds; 0 not to wait, None or a negative number for no limit.
         """
         raise NotImplementedError
 
     def spin_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
         """Run callbacks until a future is done or cancelled, or the timeout has passed.
 
-        `timeout_sec` is in seconds; None means no limit.
+        Args:
+            future: the future.
+            timeout_sec: the maximum time, in seconds; None for no limit.
         """
         report_self_wait(future)
         future.add_waiter(self.wake)
@@ -188,7 +190,7 @@ class Executor:
                 return
 
     def spin_once_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
-        """Wait for a callback and run it, as `spin_once` does, but stop waiting when the future is done."""
+        """Do the same as `spin_once`, but stop waiting when the future is done."""
         future.add_waiter(self.wake)
         self.spin_once(timeout_sec)
 
@@ -212,7 +214,7 @@ class Executor:
         return True
 
     def can_execute(self, entity: Any) -> bool:
-        """Return whether the callback group of an entity lets it run now."""
+        """Return whether the callback group of an entity allows it to run now."""
         return bool(entity.unblockable or entity.callback_group.can_execute(entity))
 
     def wait_for_ready_callbacks(
@@ -224,7 +226,7 @@ class Executor:
         """Wait for a callback or task that is ready to run.
 
         Args:
-            timeout_sec: the maximum wait, in seconds; 0 for no wait, None or a negative number for no limit.
+            timeout_sec: the maximum wait, in seconds; 0 not to wait, None or a negative number for no limit.
             nodes: the nodes whose callbacks to wait for; None for all nodes.
             condition: ends the wait when it returns True after a `wake`.
 
@@ -249,7 +251,7 @@ class Executor:
         return self._work.call_at(steady_ns, callback)
 
     def run_again(self, task: Task[Any]) -> None:
-        """Queue a task for its next step."""
+        """Queue a task to run up to its next await."""
         self._work.add(task)
 
     def __enter__(self) -> Self:
@@ -290,9 +292,9 @@ class Executor:
                 yield self._handler(item), item, self._nodes.get(item.node)
 
     def _next(self, deadline_ns: int | None, condition: Callable[[], bool] | None, *, begin: bool = True) -> Any:
-        """Wait for the next task, or the next entity that its callback group lets run, and return it.
+        """Wait for the next task, or the next entity that its callback group allows to run.
 
-        If `begin` is true, the group has been notified that the entity begins. Raises the same errors as
+        If `begin` is true, the group is notified that the entity begins to run. Raises the same errors as
         `wait_for_ready_callbacks`.
         """
         while True:
@@ -311,9 +313,9 @@ class Executor:
                 return item
 
     def _admit(self, item: Any, *, begin: bool = True) -> bool:
-        """Return whether work taken from the queue can run now.
+        """Return whether work that was taken from the queue can run now.
 
-        An entity that must still wait is set aside.
+        An entity that its callback group does not allow to run yet is set aside.
         """
         if isinstance(item, Task):
             return not item.ended()
@@ -328,10 +330,11 @@ class Executor:
         return False
 
     def _postpone(self, answer: Entity) -> bool:
-        """Move a client's answer behind the work that is ready, and work that follows from it.
+        """Move a client's response behind the ready work. Return whether the response was moved.
 
-        Returns whether the answer was postponed. rclpy runs tasks and messages first: when a client learns that its
-        goal was accepted, it already has the feedback, if the goal was executed in the meantime.
+        rclpy runs tasks and messages before responses: when a client learns that its goal was accepted, it has already
+        received the feedback if the goal was executed in the meantime. A response is postponed a limited number of
+        times.
         """
         if answer.postponed >= _POSTPONED_AT_MOST or not self._work.has_ready():
             answer.postponed = 0
@@ -343,15 +346,13 @@ class Executor:
     def _execute(self, item: Any) -> None:
         """Run a task up to its next await, or the next call of an entity.
 
-        The entity's group must have been notified that it begins.
-
-        Exceptions of the user's code propagate.
+        The entity's group must have been notified that the entity begins. Exceptions of the user's code propagate.
         """
         if isinstance(item, Task):
             item()
             _raise_fault(item)
             return
-        callback_of = item  # see `linkwright.graph.loop.future`
+        callback_of = item  # `linkwright.graph.loop.future` looks for this local name
         result = None
         try:
             call = callback_of.take()
@@ -370,7 +371,7 @@ class Executor:
 
         def run() -> object:
             nonlocal begun
-            callback_of = entity  # see `linkwright.graph.loop.future`
+            callback_of = entity  # `linkwright.graph.loop.future` looks for this local name
             if not (callback_of.unblockable or callback_of.callback_group.beginning_execution(callback_of)):
                 self._block(callback_of)
                 return None
@@ -392,13 +393,13 @@ class Executor:
 
     def _block(self, entity: Entity) -> None:
         self._blocked.append(entity)
-        if entity.callback_group.can_execute(entity):  # the member it waited for has just ended
+        if entity.callback_group.can_execute(entity):  # the running member of the group has just ended
             self._release_blocked()
 
     def _release_blocked(self) -> None:
         released = []
         while self._blocked:
-            with suppress(IndexError):  # another thread was faster
+            with suppress(IndexError):  # another thread took the last entity
                 released.append(self._blocked.popleft())
         if released:
             self._work.add_first(released)
@@ -432,7 +433,7 @@ def _raise_fault(task: Task[Any]) -> None:
 
 
 class SpinningExecutor(Executor):
-    """An executor that spins in a loop; subclasses define a single turn of the loop."""
+    """An executor that spins in a loop; subclasses define one iteration of the loop."""
 
     def spin(self) -> None:
         """Run callbacks until the executor or the context is shut down."""
@@ -444,14 +445,11 @@ class SpinningExecutor(Executor):
             self._spinner_ends()
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
-        """Wait for a callback and have it run; see ``Executor.spin_once``."""
+        """Wait for a callback, then run it or have it run; see ``Executor.spin_once``."""
         self._single_turn(timeout_sec, None)
 
     def spin_once_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
-        """Wait for a callback and have it run, but stop waiting when the future is done.
-
-        Apart from that it works like `spin_once`.
-        """
+        """Do the same as `spin_once`, but stop waiting when the future is done."""
         future.add_waiter(self.wake)
         self._single_turn(timeout_sec, future.ended)
 
@@ -464,47 +462,9 @@ class SpinningExecutor(Executor):
 
     @abstractmethod
     def _turn(self, deadline_ns: int | None, condition: Callable[[], bool] | None) -> None:
-        """Wait for a callback and have it run.
+        """Wait for a callback, then run it or have it run.
 
         Args:
             deadline_ns: the value of ``time.monotonic_ns`` at which the wait ends; None for no limit.
             condition: ends the wait when it returns True after a `wake`.
-
-        Runs callbacks in a pool of threads, as far as their groups allow (rclpy ``MultiThreadedExecutor``).
-
-        The spinning thread hands out work to at most as many threads as the pool has; other work waits with its
-        entities, according to their QoS. `spin_once` does not wait until the work that it handed out ends. If a
-        callback raises an exception, ``spin`` raises it in the spinning thread.
-
-        Args:
-            num_threads: the number of threads; None for the number of processors of the process.
-            context: see `Executor`.
-
-        Stop running callbacks; wait for those that are running, and for the threads to end.
-
-        Args:
-            timeout_sec: the maximum wait, in seconds; None or a negative number for no limit.
-            wait_for_threads: False to return without waiting for the threads.
-
-        Returns:
-            Whether all of them have ended.
-
-        Run a task and, while the executor spins, the work that becomes ready next; this avoids a thread switch.
-
-        A pool of daemon threads, each started when it is needed.
-
-        Args:
-            limit: the maximum number of threads.
-            name: the prefix of the threads' names.
-            freed: called when a job has ended and its thread is free for the next one.
-
-        Whether a job that is submitted now would start immediately.
-
-        End the threads after the submitted jobs, and wait for the threads.
-
-        Args:
-            timeout_sec: the maximum wait, in seconds; None for no limit.
-
-        Returns:
-            Whether all have ended. A thread that calls this method does not wait for itself.
         """

@@ -25,8 +25,8 @@ from linkwright.process.processors import usable_processors
 class MultiThreadedExecutor(SpinningExecutor):
     """Runs callbacks in a pool of threads, as groups allow (rclpy ``MultiThreadedExecutor``).
 
-    The spinning thread hands out work to at most as many threads as the pool has; other work waits with its entities,
-    according to their QoS. `spin_once` does not wait until the work that it handed out ends. If a callback raises an
+    The spinning thread hands work to at most as many threads as the pool has. Other work stays queued in its entities,
+    subject to their QoS. `spin_once` does not wait for the work that it handed out to end. If a callback raises an
     exception, ``spin`` raises it in the spinning thread.
 
     Args:
@@ -57,14 +57,14 @@ class MultiThreadedExecutor(SpinningExecutor):
             self._is_spinning = False
 
     def shutdown(self, timeout_sec: float | None = None, *, wait_for_threads: bool = True) -> bool:
-        """Stop running callbacks; wait for those that are running, and for the threads to end.
+        """Stop running callbacks; wait for running callbacks and for the threads to end.
 
         Args:
             timeout_sec: the maximum wait, in seconds; None or a negative number for no limit.
             wait_for_threads: False to return without waiting for the threads.
 
         Returns:
-            Whether all of them have ended.
+            Whether all callbacks, and the threads if waited for, have ended.
         """
         deadline_ns = deadline_after(timeout_sec)
         ended = super().shutdown(timeout_sec)
@@ -98,9 +98,9 @@ class MultiThreadedExecutor(SpinningExecutor):
             raise self._faults.popleft()
 
     def _run(self, item: Any) -> None:
-        """Run a task and, while the executor spins, the work that becomes ready next.
+        """Run a task or entity and, while the executor spins, the work that becomes ready next.
 
-        This avoids a thread switch.
+        Running the next work in the same thread avoids a thread switch.
         """
         while item is not None:
             try:
@@ -122,7 +122,7 @@ class MultiThreadedExecutor(SpinningExecutor):
 
 
 class Workers:
-    """A pool of daemon threads, each started when it is needed.
+    """A pool of daemon threads, each started when it is first needed.
 
     Args:
         limit: the maximum number of threads.
@@ -155,7 +155,7 @@ class Workers:
         self._jobs.put(job)
 
     def close(self, timeout_sec: float | None = None) -> bool:
-        """End the threads after the submitted jobs, and wait for the threads.
+        """Let the threads end after the submitted jobs, and wait for them.
 
         Args:
             timeout_sec: the maximum wait, in seconds; None for no limit.

@@ -10,14 +10,14 @@ from linkwright.graph.faults import ConditionReachedException, ShutdownException
 
 
 class SingleThreadedExecutor(SpinningExecutor):
-    """Runs callbacks one after another in the thread that spins (rclpy ``SingleThreadedExecutor``).
+    """Runs callbacks one by one in the spinning thread (rclpy ``SingleThreadedExecutor``).
 
-    If a callback raises an exception, ``spin`` raises it. If the context is shut down from outside during the wait,
-    ``spin`` raises ``ExternalShutdownException``.
+    If a callback raises an exception, ``spin`` raises it, too. If the context is shut down from outside during the
+    wait, ``spin`` raises ``ExternalShutdownException``.
     """
 
     def is_own_thread(self) -> bool:
-        """Return whether the calling thread runs the callbacks, and so must not wait for other callbacks."""
+        """Return whether the calling thread spins this executor, and so must not block on callbacks."""
         return set(self._spinners) == {threading.get_ident()}
 
     def _turn(self, deadline_ns: int | None, condition: Callable[[], bool] | None) -> None:

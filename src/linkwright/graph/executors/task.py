@@ -13,25 +13,25 @@ T = TypeVar("T")
 
 
 class TaskRunner(Protocol):
-    """The interface of an executor that its tasks need."""
+    """The part of an executor that its tasks need."""
 
     def create_task(self, callback: Callable[..., Any], *args: Any) -> Any:
         """Run a callable after the work that is already ready."""
 
     def run_again(self, task: Task[Any]) -> None:
-        """Queue a task for its next step."""
+        """Queue a task to run up to its next await."""
 
 
 class Task(Future[T]):
     """The future result of a callable or a coroutine.
 
-    Calling the task runs the callable, or the coroutine up to its next ``await``. A task with an executor asks it for
-    the next step as soon as the awaited future is done.
+    Calling the task runs the callable, or the coroutine up to its next ``await``. As soon as the awaited future is
+    done, the task is queued in its executor again.
 
     Args:
         handler: a callable, a coroutine function or a coroutine.
-        args: positional arguments for it.
-        kwargs: keyword arguments for it.
+        args: positional arguments for `handler`.
+        kwargs: keyword arguments for `handler`.
         executor: the executor that runs the task and its done callbacks.
         ended: called once when nothing is left to run, whether the task finished, failed or was cancelled.
     """
@@ -61,7 +61,7 @@ class Task(Future[T]):
     def __call__(self) -> None:
         """Run until the next await, or to the end.
 
-        Do nothing while another thread runs the task, or once it has ended.
+        Does nothing while another thread runs the task, or once it has ended.
         """
         if self.ended() or not self._turn.acquire(blocking=False):
             return
@@ -77,7 +77,7 @@ class Task(Future[T]):
         return self._turn.locked()
 
     def cancel(self) -> None:
-        """Cancel the task: a coroutine is closed at its current await, unless it is running right now."""
+        """Cancel the task. A coroutine is closed at its current await, unless it is running now."""
         super().cancel()
         if self.cancelled() and self._turn.acquire(blocking=False):
             try:
@@ -89,7 +89,7 @@ class Task(Future[T]):
 
     def __await__(self) -> Generator[Any, None, T | None]:
         if is_stepped_by_executor():
-            # Yield even if the other task is done, so that tasks that await each other take turns.
+            # Yield even if the other task is done, so that tasks that await each other alternate.
             yield self
         return (yield from super().__await__())
 

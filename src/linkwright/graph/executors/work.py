@@ -1,4 +1,4 @@
-"""The work queue of an executor: ready entities, alarms, and the wait for either."""
+"""The work queue of an executor: ready entities, alarms, and waiting for both."""
 
 from __future__ import annotations
 
@@ -41,13 +41,14 @@ class ScheduledCall:
 
 
 class WorkQueue:
-    """A queue that any thread may add to.
+    """A queue of ready entities and tasks that any thread may add to.
 
-    A thread that takes from it also triggers the alarms that are due.
+    A thread that takes from the queue also runs the alarms that are due.
 
-    Adding to it takes no lock while no thread waits, so passing a message to the own thread costs almost nothing.
-    Waiting holds no lock either: Ctrl-C may raise KeyboardInterrupt at any point of the wait, and would leave a
-    ``threading.Condition`` with a lock that its thread does not hold (RuntimeError: cannot release un-acquired lock).
+    Adding takes no lock while no thread waits, so a message within one thread costs almost nothing. Waiting holds no
+    lock
+    either: Ctrl-C may raise KeyboardInterrupt at any point of the wait, which would leave a ``threading.Condition``
+    with a lock that its thread does not hold (RuntimeError: cannot release un-acquired lock).
     """
 
     def __init__(self) -> None:
@@ -75,9 +76,9 @@ class WorkQueue:
         return bool(self._ready)
 
     def take(self) -> Any:
-        """Remove and return the first ready entity, after running the alarms that are due.
+        """Run the alarms that are due, then remove the first ready item and return it.
 
-        The result is None if there is none.
+        Returns None if the queue is empty.
         """
         if self._alarms and self._alarms[0].steady_ns <= time.monotonic_ns():
             self._call_due()
@@ -87,14 +88,14 @@ class WorkQueue:
             return None
 
     def wait(self, deadline_ns: int | None) -> None:
-        """Wait for an entity that may be ready, a due alarm, `wake`, or `deadline_ns`.
+        """Wait for an item, a due alarm, a call of `wake`, or `deadline_ns`.
 
-        The wait may also end for no reason.
+        The wait may also end early without a reason.
         """
         self._sleep(deadline_ns, until_wake=False)
 
     def wait_for_wake(self, deadline_ns: int | None) -> None:
-        """Wait until `wake` is called, or `deadline_ns` is reached; ready entities stay in the queue."""
+        """Wait for a call of `wake`, or `deadline_ns`. Ready items stay in the queue."""
         self._sleep(deadline_ns, until_wake=True)
 
     def wake(self) -> None:
@@ -105,7 +106,7 @@ class WorkQueue:
     def call_at(self, steady_ns: int, callback: Callable[[], None]) -> ScheduledCall:
         """Schedule a callback for a value of ``time.monotonic_ns``.
 
-        A thread that takes from the queue calls it.
+        The callback runs in a thread that takes from the queue.
         """
         with self._alarms_lock:
             self._numbers += 1
@@ -127,7 +128,7 @@ class WorkQueue:
                     self._cancelled = 0
 
     def clear(self) -> None:
-        """Remove all entities and alarms."""
+        """Remove all items and alarms."""
         with self._alarms_lock:
             self._ready.clear()
             self._alarms.clear()
@@ -148,7 +149,7 @@ class WorkQueue:
     def _sleep(self, deadline_ns: int | None, *, until_wake: bool) -> None:
         sleeper = threading.Lock()
         sleeper.acquire()
-        self._sleepers.append(sleeper)  # before the check of the queue: a thread that adds after the check wakes it
+        self._sleepers.append(sleeper)  # before the queue is checked, so that a thread that adds later wakes this one
         try:
             if self._woken or (self._ready and not until_wake):
                 return
@@ -161,7 +162,7 @@ class WorkQueue:
                 sleeper.acquire(timeout=seconds)
         finally:
             self._woken = False
-            with suppress(ValueError):  # it was woken
+            with suppress(ValueError):  # already removed by the thread that woke it
                 self._sleepers.remove(sleeper)
 
     def _first_of_alarm_and(self, deadline_ns: int | None) -> int | None:
@@ -172,5 +173,5 @@ class WorkQueue:
 
     def _rouse(self) -> None:
         while self._sleepers:
-            with suppress(IndexError):  # another thread was faster
+            with suppress(IndexError):  # another thread removed it
                 self._sleepers.popleft().release()

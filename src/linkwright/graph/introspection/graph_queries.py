@@ -25,7 +25,7 @@ class Namesakes:
     """Tracks node names of this process that other processes use too, and reports changes.
 
     Args:
-        notify: receives the shared names when they change. By default the node logs each name once while it is shared.
+        notify: receives the shared names when they change. None logs a warning for each name when it becomes shared.
     """
 
     def __init__(self, notify: OnNamesakes | None = None) -> None:
@@ -34,9 +34,9 @@ class Namesakes:
         self._lock = threading.RLock()
 
     def review(self, ours: Collection[NodeHandle], outside: Collection[NodeIdentity]) -> None:
-        """Compare the names of our nodes with those of other processes.
+        """Compare the node names of this process with those of other processes.
 
-        Report when the set of shared names has changed.
+        Reports the shared names when they have changed.
         """
         if not outside and not self._shared:
             return
@@ -81,14 +81,15 @@ class TopicEndpointInfo:
     """The description of a publisher or subscription of a topic (rclpy ``TopicEndpointInfo``).
 
     Attributes:
-        node_name: the name of its node.
-        node_namespace: the namespace of its node.
+        node_name: the name of the endpoint's node.
+        node_namespace: the namespace of the endpoint's node.
         topic_type: the name of the message type.
         topic_type_hash: ``RIHS01_...``; empty if it is not known.
         endpoint_type: publisher or subscription.
-        endpoint_gid: its GID.
-        qos_profile: the QoS that it offers or requests.
-        host: the machine that it runs on, which rclpy does not provide; empty for this process, and if it is not known.
+        endpoint_gid: the GID of the endpoint.
+        qos_profile: the offered or requested QoS.
+        host: the machine that the endpoint runs on, which rclpy does not provide; empty for this process, and if the
+            machine is not known.
     """
 
     node_name: str = ""
@@ -135,7 +136,7 @@ class TopicEndpointInfo:
 
 
 def names_and_types(endpoints: Iterable[EndpointInfo], *kinds: EndpointKind) -> NamesAndTypes:
-    """Return the names and types of the endpoints of the given kinds."""
+    """Return the sorted names of the endpoints of the given kinds, each with its type names."""
     types: dict[str, set[str]] = {}
     for endpoint in endpoints:
         if endpoint.kind in kinds:
@@ -144,11 +145,9 @@ def names_and_types(endpoints: Iterable[EndpointInfo], *kinds: EndpointKind) -> 
 
 
 def action_names_and_types(endpoints: Iterable[EndpointInfo], *kinds: EndpointKind) -> NamesAndTypes:
-    """Return the names and types of actions, as rcl_action does.
+    """Return the names and types of actions whose feedback topic has endpoints of given kinds.
 
-    These are the actions whose feedback topic has endpoints of the given kinds.
-
-    An action server publishes feedback, an action client subscribes to it.
+    This is how rcl_action finds actions: an action server publishes feedback, an action client subscribes to it.
     """
     types: dict[str, set[str]] = {}
     for endpoint in endpoints:
@@ -163,7 +162,7 @@ _SERVICE, _CLIENT = EndpointKind.SERVICE, EndpointKind.CLIENT
 
 
 class GraphQueries:
-    """The queries that a graph answers, with the names of rclpy; base class of `Graph`."""
+    """The queries that a graph answers, named as in rclpy; base class of `Graph`."""
 
     bus: Bus
     _nodes: dict[NodeHandle, None]
@@ -233,7 +232,7 @@ class GraphQueries:
         return action_names_and_types(self._of_node(node_name, node_namespace), _PUBLISHER)
 
     def get_action_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
-        """Return the actions that a node has clients of; see `get_publisher_names_and_types_by_node`."""
+        """Return the actions of a node's clients; see `get_publisher_names_and_types_by_node`."""
         return action_names_and_types(self._of_node(node_name, node_namespace), _SUBSCRIPTION)
 
     def get_publisher_names_and_types_by_node(
@@ -262,7 +261,7 @@ class GraphQueries:
         return names_and_types(self._of_node(node_name, node_namespace), _SERVICE)
 
     def get_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
-        """Return the services that a node has clients of; see `get_publisher_names_and_types_by_node`."""
+        """Return the services of a node's clients; see `get_publisher_names_and_types_by_node`."""
         return names_and_types(self._of_node(node_name, node_namespace), _CLIENT)
 
     def get_publishers_info_by_topic(self, topic: str) -> list[TopicEndpointInfo]:
@@ -292,9 +291,9 @@ class GraphQueries:
     # --- waiting -----------------------------------------------------------------------------------------------------
 
     def notify_change(self) -> None:
-        """Wake the threads blocked in `wait_until` to check their conditions again.
+        """Wake the threads blocked in `wait_until`, which check their conditions again.
 
-        It may be called from any thread.
+        Any thread may call this.
         """
         with self._changed:
             self._changed.notify_all()
@@ -304,8 +303,7 @@ class GraphQueries:
     def watch(self, changed: Callable[[], object]) -> None:
         """Register a callback for changes of nodes and endpoints.
 
-        It is called in the thread in which they happen.
-        Exceptions that it raises are logged.
+        The callback runs in the thread in which the change happens. Exceptions that the callback raises are logged.
         """
         self._watchers[changed] = None
 
@@ -321,7 +319,7 @@ class GraphQueries:
             timeout_sec: the maximum wait, in seconds; None or a negative number for no limit.
 
         Returns:
-            Whether the condition holds. Closing the graph ends the wait as well.
+            Whether the condition holds at the end of the wait, which closing the graph ends as well.
         """
         deadline = None if timeout_sec is None or timeout_sec < 0 else time.monotonic() + timeout_sec
         while True:
@@ -331,11 +329,11 @@ class GraphQueries:
             if self._closed or (left is not None and left <= 0):
                 return False
             with self._changed:
-                # Discovery may report a change between the check and the wait, so keep each wait short.
+                # Discovery may report a change between the check and the wait, so each wait must be short.
                 self._changed.wait(_LONGEST_WAIT_S if left is None else min(left, _LONGEST_WAIT_S))
 
     def wait_for_node(self, fully_qualified_node_name: str, timeout: float | None = None) -> bool:
-        """Block the calling thread until a node exists; return whether it does.
+        """Block the calling thread until a node exists; return whether it exists.
 
         Args:
             fully_qualified_node_name: the node's full name, with or without the leading slash.
@@ -359,7 +357,7 @@ class GraphQueries:
     def _matching_endpoints(self, are_asked_for: Callable[[Endpoint | EndpointInfo], bool]) -> list[EndpointInfo]:
         """Return the endpoints that meet a condition, in this process and outside.
 
-        Only these are described, because describing an endpoint takes time.
+        Only the matching endpoints are described, because describing an endpoint takes time.
         """
         own = (endpoint.info() for endpoint in self.bus.endpoints() if are_asked_for(endpoint))
         return [*own, *(endpoint for endpoint in self.remote_endpoints() if are_asked_for(endpoint))]
@@ -369,7 +367,7 @@ _LONGEST_WAIT_S = 0.1
 
 
 def _with_type_hash(endpoint: EndpointInfo) -> EndpointInfo:
-    """Return the description of an endpoint with its type hash, which is computed only on request."""
+    """Return the description with the type hash added, which is computed only when needed."""
     if endpoint.type_hash or not endpoint.local:
         return endpoint
     from linkwright.messages import get_interface, type_hash

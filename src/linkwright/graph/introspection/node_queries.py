@@ -1,7 +1,4 @@
-"""A node's methods that query the graph, and its type description service.
-
-The methods are those of ``rclpy.node.Node``.
-"""
+"""A node's graph query methods, as in ``rclpy.node.Node``, and its type description service."""
 
 from __future__ import annotations
 
@@ -25,9 +22,9 @@ _HASH = re.compile(r"RIHS01_[0-9a-f]{64}")
 
 
 def is_enabled_by_default(variables: Mapping[str, str] = os.environ) -> bool:
-    """Return whether nodes of the distribution in ``ROS_DISTRO`` have the type description service.
+    """Return whether nodes of the distribution ``ROS_DISTRO`` describe their types.
 
-    If ``ROS_DISTRO`` is not set, the distribution is taken to be Humble.
+    This means that they have the type description service. If ``ROS_DISTRO`` is not set, Humble is assumed.
     """
     return not is_before_iron(variables)
 
@@ -35,7 +32,7 @@ def is_enabled_by_default(variables: Mapping[str, str] = os.environ) -> bool:
 class TypeDescriptions:
     """A node's ``get_type_description`` service.
 
-    It describes the types of the node's publishers, subscriptions, services and clients.
+    The service describes the types of the node's publishers, subscriptions, services and clients.
 
     Args:
         handle: the node's handle.
@@ -83,7 +80,7 @@ def _is_asked_for(name: str, request: Any) -> bool:
 
     try:
         return type_hash(name) == str(request.type_hash)
-    except InterfaceNotFoundError:  # a raw endpoint whose type is not known here
+    except InterfaceNotFoundError:  # A raw endpoint may have a type without a local definition.
         return False
 
 
@@ -104,7 +101,7 @@ def _individual(described: Mapping[str, Any]) -> Any:
 def _source(name: str) -> Any:
     """Return the source text of an interface as a TypeSource message.
 
-    A type without its own file, such as a request, has the encoding ``implicit``.
+    A type without a file of its own, such as a request, has the encoding ``implicit``.
     """
     _, encoding, own_name = name.split("/")
     if "_" in own_name:
@@ -121,17 +118,17 @@ R = TypeVar("R")
 class NodeQueries:
     """A node's queries to the graph; base class of `Node`.
 
-    Names are relative to the node, and remapped.
+    Names in queries are expanded relative to the node, and remapped.
     """
 
     def __init__(self, graph: GraphQueries, handle: NodeHandle) -> None:
-        # These names are mangled so that a user's node class may use the plain names.
+        # The attributes have mangled names, so that a user's node class may use the plain names.
         self.__graph = graph
         self.__handle = handle
 
     @staticmethod
     def _of_graph(question: Callable[Concatenate[GraphQueries, P], R]) -> Callable[Concatenate[NodeQueries, P], R]:
-        """Wrap a graph query as a method of the node; used only for the assignments below."""
+        """Wrap a graph query as a method of the node; used only in the class body."""
 
         @wraps(question)
         def ask(node: NodeQueries, /, *args: P.args, **kwargs: P.kwargs) -> R:
@@ -173,7 +170,7 @@ class NodeQueries:
     get_service_names_and_types_by_node = _of_graph(GraphQueries.get_service_names_and_types_by_node)
     get_client_names_and_types_by_node = _of_graph(GraphQueries.get_client_names_and_types_by_node)
     wait_for_node = _of_graph(GraphQueries.wait_for_node)
-    del _of_graph  # a user's node may have an attribute with this name
+    del _of_graph  # a user's node may have an attribute of this name
 
     def get_publishers_info_by_topic(self, topic_name: str, no_mangle: bool = False) -> list[TopicEndpointInfo]:
         """Return the publishers of a topic.
@@ -207,7 +204,7 @@ class NodeQueries:
 
 
 def _resolved(resolve: Callable[[str], str], name: str) -> str:
-    """Return the absolute name for a query; invalid names raise errors with rclpy's wording.
+    """Return the absolute name for a query. Errors have rclpy's wording.
 
     Raises:
         TypeError: the name is not a string.

@@ -19,7 +19,7 @@ class Traffic:
         least_size: the size of the smallest message, in bytes.
         most_size: the size of the largest message, in bytes.
         count: the number of messages in the statistics.
-        age_ns: the age of the oldest of them, in nanoseconds.
+        age_ns: the age of the oldest message in the statistics, in nanoseconds.
     """
 
     messages_per_second: float
@@ -37,7 +37,7 @@ class TrafficWindow:
     Args:
         size: the maximum number of messages.
         longest_ns: the maximum age of the messages, in nanoseconds; None for no limit. The last two messages are always
-            kept, so that slow topics have statistics, too.
+            kept, so that statistics exist for slow topics, too.
     """
 
     def __init__(self, size: int, longest_ns: int | None = None) -> None:
@@ -45,15 +45,15 @@ class TrafficWindow:
         self._longest_ns = longest_ns
 
     def add(self, now_ns: int, size: int) -> None:
-        """Add a message of `size` bytes."""
+        """Add a message of `size` bytes that arrived at `now_ns`."""
         self._messages.append((now_ns, size))
 
     def traffic(self, now_ns: int) -> Traffic | None:
         """Return the statistics; None while there are fewer than two messages.
 
-        The bandwidth is averaged from the first message until now, as ``ros2 topic bw`` does, and so decreases when the
-        topic falls silent. The rate is averaged from the first message to the last one, until the silence is longer
-        than twice the mean interval.
+        As in ``ros2 topic bw``, the bandwidth is averaged from the first message until now, so it decreases when no
+        more messages arrive. The rate is averaged from the first message to the last one, or until now if the
+        last message is older than twice the mean interval.
         """
         messages = self._messages
         if self._longest_ns is not None:

@@ -13,11 +13,11 @@ from linkwright.graph.lifecycle.states import LifecycleState, TransitionCallback
 class ManagedEntity:
     """A part of a managed node that is notified of the node's transitions.
 
-    Its return values decide how a transition ends.
+    The return values of its callbacks decide how a transition ends.
     """
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Handle the configuration of the node, which was in `state` before."""
+        """Handle the configuration of the node, whose previous state is `state`."""
         return TransitionCallbackReturn.SUCCESS
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -66,9 +66,9 @@ class SimpleManagedEntity(ManagedEntity):
     def when_enabled(
         wrapped: Callable[..., Any] | None = None, *, when_not_enabled: Callable[..., Any] | None = None
     ) -> Callable[..., Any]:
-        """Decorate a method to run only while its object is enabled.
+        """Decorate a method so that it runs only while its object is enabled.
 
-        Otherwise `when_not_enabled`, if given, is called.
+        While the object is not enabled, `when_not_enabled` is called instead; without it the method returns None.
         """
 
         def decorate(method: Callable[..., Any]) -> Callable[..., Any]:

@@ -38,9 +38,9 @@ _CALLBACKS = {
 
 
 class LifecycleTransitionError(LinkwrightError, RclError):
-    """Raised when a requested transition does not start from the node's current state.
+    """Raised when a requested transition cannot start from the node's current state.
 
-    The message is that of rcl.
+    The wording of the message is rcl's.
     """
 
     def __init__(self, requested: object, state: LifecycleState, available: Iterable[str]) -> None:
@@ -60,11 +60,11 @@ class LifecycleNodeMixin(ManagedEntity):
     """Turns a node class into a managed node class; to be initialized after the node.
 
     The callbacks ``on_configure``, ``on_activate``, ``on_deactivate``, ``on_cleanup``, ``on_shutdown`` and ``on_error``
-    receive the state in which the transition starts, and return a `TransitionCallbackReturn`. Unless overridden, they
-    call the managed entities in turn.
+    receive the state in which the transition starts, and return a `TransitionCallbackReturn`. Unless overridden, each
+    callback calls the callback of the same name of every managed entity.
 
     Args:
-        enable_communication_interface: whether other nodes can control the node through services, and see its
+        enable_communication_interface: whether other nodes can control the node through services, and receive its
             transition events.
         callback_group: the callback group of the services.
     """
@@ -101,7 +101,7 @@ class LifecycleNodeMixin(ManagedEntity):
         """Configure the node.
 
         Raises:
-            LifecycleTransitionError: the transition does not start from the node's current state.
+            LifecycleTransitionError: the node cannot be configured in its current state.
         """
         return self._change_by_label("configure")
 
@@ -129,7 +129,7 @@ class LifecycleNodeMixin(ManagedEntity):
     def create_lifecycle_publisher(self, *args: Any, **kwargs: Any) -> Any:
         """Create a publisher that publishes only while the node is active.
 
-        The arguments are those of ``create_publisher``.
+        The arguments are those of ``create_publisher``, except ``publisher_class``.
 
         Raises:
             TypeError: ``publisher_class`` is given.
@@ -142,7 +142,7 @@ class LifecycleNodeMixin(ManagedEntity):
         return publisher
 
     def destroy_lifecycle_publisher(self, publisher: LifecyclePublisher) -> Any:
-        """Destroy a lifecycle publisher."""
+        """Destroy a lifecycle publisher, and stop notifying it of transitions."""
         if publisher in self._managed_entities:
             self._managed_entities.remove(publisher)
         node: Any = self
@@ -190,7 +190,10 @@ class LifecycleNodeMixin(ManagedEntity):
         return self._change(transition)
 
     def _change(self, transition: Transition) -> TransitionCallbackReturn:
-        """Perform a transition with its callback and its ending, and process an error if one occurs."""
+        """Perform a transition with its callback and its ending.
+
+        If the callback results in an error, the error processing runs, too.
+        """
         initial = self._state_machine.state
         self._enter(transition)
         verdict = self._call(initial)

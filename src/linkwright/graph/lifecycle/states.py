@@ -17,7 +17,7 @@ class TransitionCallbackReturn(IntEnum):
     ERROR = 99
 
     def to_label(self) -> str:
-        """Return the label that triggers the transition for this result."""
+        """Return the label of the transition that this result triggers."""
         return f"transition_{self.name.lower()}"
 
 
@@ -59,11 +59,11 @@ class Transition(NamedTuple):
     """A transition from one state to another.
 
     Attributes:
-        transition_id: its ID.
-        label: the label that triggers it: that of a requested transition, or ``transition_success`` and the like for
-            the result of one.
-        start: the state in which it starts.
-        goal: the state in which it ends.
+        transition_id: the transition's ID.
+        label: the label that triggers the transition: for a transition that ends another one it depends on the result,
+            such as ``transition_success``.
+        start: the state in which the transition starts.
+        goal: the state in which the transition ends.
     """
 
     transition_id: int
@@ -75,7 +75,7 @@ class Transition(NamedTuple):
 def _endings(
     number: int, through: LifecycleState, success: LifecycleState, failure: LifecycleState, error: LifecycleState
 ) -> list[Transition]:
-    """Return the transitions that end a requested transition: success, failure and error."""
+    """Return the transitions for success, failure and error from the transition state `through`."""
     ends = (("success", success), ("failure", failure), ("error", error))
     return [Transition(number + place, f"transition_{name}", through, end) for place, (name, end) in enumerate(ends)]
 
@@ -109,7 +109,7 @@ TRANSITIONS = (
 class StateMachine:
     """The current state of a managed node, and the services that control the node.
 
-    The services are None if the node offers none.
+    The services are None if the node does not offer them.
     """
 
     service_change_state: Any = None

@@ -1,6 +1,6 @@
 """Outputs of log records: the console, in rcutils' format, and the topic ``/rosout``.
 
-RCUTILS_CONSOLE_OUTPUT_FORMAT changes the format, which applies to log files, too.
+The environment variable RCUTILS_CONSOLE_OUTPUT_FORMAT sets the format, also for log files.
 """
 
 from __future__ import annotations
@@ -29,13 +29,16 @@ Part = Callable[["LogRecord"], str]
 
 
 def console_line(record: LogRecord) -> str:
-    """Format a record as rcutils does, by default ``[INFO] [1700000000.123456789] [node]: text``."""
+    """Format a record as rcutils does.
+
+    The default format is ``[INFO] [1700000000.123456789] [node]: text``.
+    """
     return "".join(part(record) for part in _parts(os.environ.get("RCUTILS_CONSOLE_OUTPUT_FORMAT") or DEFAULT_FORMAT))
 
 
 @lru_cache(maxsize=8)
 def _parts(format_text: str) -> tuple[Part, ...]:
-    """Split a format into its parts: literal texts, and functions for the tokens.
+    """Split a format into literal texts and, for each known token, a function that formats it.
 
     Unknown tokens are left unchanged.
     """
@@ -92,14 +95,14 @@ _COLOURS = {
 
 
 def print_to_console(record: LogRecord) -> None:
-    """Write a record to standard error, or to standard output if RCUTILS_LOGGING_USE_STDOUT is 1.
+    """Write a record to standard error; to standard output if RCUTILS_LOGGING_USE_STDOUT is 1.
 
     Records are coloured on terminals. RCUTILS_COLORIZED_OUTPUT (0 or 1) overrides this; if it is not set, NO_COLOR
-    turns colours off. Each record is flushed immediately, regardless of RCUTILS_LOGGING_BUFFERED_STREAM, so that none
-    is lost if the process dies. A stream without a reader is ignored.
+    turns colours off. Each record is flushed immediately, regardless of RCUTILS_LOGGING_BUFFERED_STREAM, so that no
+    record is lost if the process dies. Errors of the stream are ignored.
     """
     stream: TextIO | None = sys.stdout if os.environ.get("RCUTILS_LOGGING_USE_STDOUT") == "1" else sys.stderr
-    if stream is None:  # the program has no console
+    if stream is None:  # A program without a console has no stream.
         return
     line = console_line(record)
     try:
@@ -108,7 +111,7 @@ def print_to_console(record: LogRecord) -> None:
         stream.write(f"{line}\n")
         stream.flush()
     except (OSError, ValueError):
-        # The reader is gone, the disk is full or the stream is closed: none of these is a reason to end the program.
+        # A broken pipe, a full disk or a closed stream must not end the program.
         return
 
 
@@ -124,14 +127,14 @@ ROSOUT_TOPIC = "/rosout"
 
 
 class LogPublisher(Protocol):
-    """A publisher of `LOG_TYPE`."""
+    """A publisher of messages of the type `LOG_TYPE`."""
 
     @property
     def msg_type(self) -> type[Any]:
         """The message class."""
 
     def publish(self, msg: Any) -> None:
-        """Send a message."""
+        """Publish a log message."""
 
 
 class Rosout:
@@ -149,7 +152,7 @@ class Rosout:
         logger.rosout = self.publish
 
     def publish(self, record: LogRecord) -> None:
-        """Publish a record. Records that are logged while doing so are not published."""
+        """Publish a record. Records that are logged while one is being published are not published."""
         if self._publishing:
             return
         self._publishing = True
@@ -159,7 +162,7 @@ class Rosout:
             self._publishing = False
 
     def close(self) -> None:
-        """Stop publishing; the node destroys the publisher."""
+        """Stop publishing. The node, not this object, destroys the publisher."""
         self._logger.rosout = None
 
     def _message(self, record: LogRecord) -> Any:

@@ -1,4 +1,4 @@
-"""Log files of processes, with the folder and the names that rcl_logging_spdlog uses."""
+"""Log files of processes, with the folder and file names of rcl_logging_spdlog."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from linkwright.graph.log.logger import LogLevel, LogRecord
 
 
 def log_folder(environment: Mapping[str, str] | None = None) -> Path:
-    """Return the folder of log files: ROS_LOG_DIR, else ``log`` in ROS_HOME, else ``~/.ros/log``."""
+    """Return the log folder: ROS_LOG_DIR, else ``log`` in ROS_HOME, else ``~/.ros/log``."""
     environment = os.environ if environment is None else environment
     if environment.get("ROS_LOG_DIR"):
         return Path(environment["ROS_LOG_DIR"]).expanduser()
@@ -26,8 +26,8 @@ def log_folder(environment: Mapping[str, str] | None = None) -> Path:
 class LogFile:
     """The log file of this process, created with the first record.
 
-    Its name is ``EXECUTABLE_PID_MILLISECONDS.log``.
-    If the folder is not writable there is no file, and the process continues.
+    The file name is ``EXECUTABLE_PID_MILLISECONDS.log``. If the folder is not writable, records are discarded without
+    an error.
 
     Args:
         executable: the name of the program.
@@ -52,7 +52,7 @@ class LogFile:
             file.write(f"{console_line(record)}\n")
             if record.level >= LogLevel.ERROR:
                 file.flush()
-        except OSError:  # the disk is full
+        except OSError:  # For example, the disk is full.
             self.close()
 
     def close(self) -> None:

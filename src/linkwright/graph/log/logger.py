@@ -1,6 +1,6 @@
-"""Loggers with the methods of rclpy's loggers, and their records, levels and filters.
+"""Loggers with the methods of rclpy's loggers, log records, levels, and filters.
 
-The filters are once, skip the first, and throttle.
+The filters are: once, skip the first, and throttle.
 """
 
 from __future__ import annotations
@@ -29,18 +29,18 @@ class LogLevel(IntEnum):
 
 
 def level_named(name: str) -> LogLevel | None:
-    """Return the severity with a name, in upper or lower case; None if the name is unknown."""
+    """Return the severity with a name, in any case; None if the name is unknown."""
     return LogLevel.__members__.get(name.upper())
 
 
 class LogLevels:
     """The levels of the loggers of a graph.
 
-    A logger that has no level itself inherits the level of its nearest ancestor: ``robot`` for ``robot.arm``. The root
-    of this tree is the default level.
+    A logger without a level of its own inherits the level of its nearest ancestor, such as ``robot`` for ``robot.arm``.
+    The default level is the root of this tree.
 
     Attributes:
-        revision: changes with every change of a level.
+        revision: a counter that increases with every change of a level.
     """
 
     def __init__(self, default: LogLevel = LogLevel.INFO) -> None:
@@ -49,7 +49,10 @@ class LogLevels:
         self.revision = 0
 
     def set(self, name: str, level: LogLevel) -> None:
-        """Set the level of a logger; UNSET removes it. The empty name sets the default level."""
+        """Set the level of a logger; UNSET removes the level.
+
+        With an empty name, set the default level.
+        """
         if not name:
             self._default = level or LogLevel.INFO
         else:
@@ -57,17 +60,20 @@ class LogLevels:
         self.revision += 1
 
     def reset(self) -> None:
-        """Remove all levels that were set."""
+        """Remove all levels that were set, and reset the default level to INFO."""
         self._default = LogLevel.INFO
         self._own.clear()
         self.revision += 1
 
     def own_level(self, name: str) -> LogLevel:
-        """Return the level that was set for the logger itself; UNSET if none was set."""
+        """Return the level that was set for a logger itself; UNSET if none was set.
+
+        For an empty name, return the default level.
+        """
         return self._own.get(name, LogLevel.UNSET) if name else self._default
 
     def effective_level(self, name: str) -> LogLevel:
-        """Return the level in force for a logger: its own, that of its nearest ancestor, or the default."""
+        """Return the level in force for a logger: its own or its nearest ancestor's, or the default."""
         while name:
             level = self._own.get(name)
             if level:
@@ -108,18 +114,18 @@ class Logger:
 
     The methods ``debug`` to ``fatal`` and `log` accept the filters ``once=True``, ``skip_first=True`` and
     ``throttle_duration_sec=SECONDS``; the latter may be combined with ``throttle_time_source_type=CLOCK``. A filter
-    applies to the place in the code that logs. The methods return whether the record was logged.
+    applies to one call site. The methods return whether the record was logged.
 
     Args:
-        name: the name in its records.
+        name: the name in the records.
         sink: receives the records.
         now_ns: the clock that stamps the records, in nanoseconds since the epoch.
-        levels: the tree of levels that it belongs to; a separate one by default.
+        levels: the tree of levels that the logger belongs to; a separate one by default.
         steady_ns: the steady time that throttles use, in nanoseconds.
 
     Attributes:
-        name: the name in its records.
-        rosout: receives the records, too, for ``/rosout``; None for no topic. Children inherit it.
+        name: the name in the records.
+        rosout: receives the records, too, to publish them on ``/rosout``; None for no topic. Children inherit it.
     """
 
     __slots__ = ("_calls", "_effective", "_levels", "_now_ns", "_revision", "_sink", "_steady_ns", "name", "rosout")
@@ -144,7 +150,7 @@ class Logger:
 
     @property
     def level(self) -> LogLevel:
-        """The level set for this logger; records below it are dropped. Assignment calls `set_level`."""
+        """The level in force for this logger. Assignment calls `set_level`."""
         return self.get_effective_level()
 
     @level.setter
@@ -152,7 +158,10 @@ class Logger:
         self.set_level(level)
 
     def set_level(self, level: int) -> None:
-        """Set the logger's level, which its children inherit; with UNSET it inherits its level again."""
+        """Set the logger's level, which its children inherit.
+
+        With UNSET the logger inherits its level again.
+        """
         self._levels.set(self.name, LogLevel(level))
 
     def get_effective_level(self) -> LogLevel:
@@ -163,11 +172,11 @@ class Logger:
         return self._effective
 
     def is_enabled_for(self, severity: int) -> bool:
-        """Return whether records of a severity are logged."""
+        """Return whether records of a severity are logged at the logger's effective level."""
         return severity >= self.get_effective_level()
 
     def get_child(self, name: str) -> Logger:
-        """Return a logger whose name is this logger's name, a dot and the given name.
+        """Return a logger named ``PARENT.NAME``, where PARENT is the name of this logger.
 
         Raises:
             ValueError: the name is empty.
@@ -182,11 +191,11 @@ class Logger:
     def log(self, message: object, severity: int, **filters: Any) -> bool:
         """Log a record unless its severity is below the level or a filter suppresses it.
 
-        Returns whether it was logged.
+        Returns whether the record was logged.
 
         Raises:
             TypeError: a filter is unknown or incomplete.
-            ValueError: the same place in the code was called with another severity or other filters before.
+            ValueError: an earlier call at the same call site had another severity or other filters.
         """
         enabled = severity >= self.get_effective_level()
         if not enabled and not filters:
@@ -244,9 +253,12 @@ def _caller() -> FrameType:
 
 
 def log_failure(logger: Logger, what: str, error: BaseException) -> None:
-    """Log a failure.
+    """Log a failure: the message of a user's mistake, the traceback of any other exception.
 
-    For a mistake in the user's input this is its message, for any other exception the traceback.
+    Args:
+        logger: the logger.
+        what: the operation that failed.
+        error: the exception; a mistake of the user is a `LinkwrightError`.
     """
     if isinstance(error, LinkwrightError):
         problem = f" {error}"
@@ -256,7 +268,13 @@ def log_failure(logger: Logger, what: str, error: BaseException) -> None:
 
 
 def run_logged(logger: Logger, what: str, callback: Callable[[], object]) -> None:
-    """Call a function, and log an exception instead of raising it."""
+    """Call a function, and log an exception instead of raising it.
+
+    Args:
+        logger: the logger.
+        what: the operation, for the log message.
+        callback: the function.
+    """
     try:
         callback()
     except Exception as error:  # noqa: BLE001  # one callback must not take the other nodes of the process with it
@@ -268,13 +286,13 @@ _OPTIONS = ("throttle_duration_sec", "throttle_time_source_type", "skip_first", 
 
 
 class CallFilter:
-    """The filters of one place in the code that logs, with their state.
+    """The filters of one call site of a logger, and their state.
 
     Args:
-        severity: the severity of the place's records.
+        severity: the severity of the records logged there.
         name: the name of the logger.
         options: ``throttle_duration_sec``, ``throttle_time_source_type``, ``skip_first``, ``once``.
-        steady_ns: the steady time that is used if no time source is given, in nanoseconds.
+        steady_ns: returns the steady time, in nanoseconds, that is used if no time source is given.
 
     Raises:
         TypeError: an option is unknown, or requires another one.
@@ -308,7 +326,7 @@ class CallFilter:
         self._logged = False
 
     def check_unchanged(self, severity: int, name: str, options: dict[str, Any]) -> None:
-        """Raise ValueError if a call's severity, logger name or filters differ from the first call's."""
+        """Raise ValueError unless a call has the first call's severity, logger name and filters."""
         if severity != self._severity_and_name[0]:
             raise ValueError("Logger severity cannot be changed between calls.")
         if name != self._severity_and_name[1]:
@@ -319,7 +337,7 @@ class CallFilter:
             raise ValueError("Logging filter parameters cannot be changed between calls.")
 
     def lets_through(self) -> bool:
-        """Count this call, and return whether it is logged."""
+        """Count a call, and return whether it is to be logged."""
         if self._duration_s:
             now_s = self._now_s()
             # If the clock jumped back, the throttle starts again.

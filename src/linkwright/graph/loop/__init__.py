@@ -1,1 +1,1 @@
-"""Running of callbacks: node handles, entities, timers, rates, futures, and the dispatcher."""
+"""The parts that run callbacks: node handles, entities, timers, futures and the dispatcher."""

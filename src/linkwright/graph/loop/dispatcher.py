@@ -1,8 +1,8 @@
-"""Entities, which are the sources of a node's callbacks, and the dispatcher of an event loop.
+"""Entities, the sources of a node's callbacks, and the dispatcher of an event loop.
 
-An entity (a subscription, a timer, a service, ...) notifies the dispatcher of its node that it has a call to run. The
-dispatcher decides when, and in which thread, to take the call and run it. This module has the dispatcher of the
-launcher's event loop; the executors of rclpy are dispatchers, too (`linkwright.graph.executors`).
+An entity (a subscription, a timer, a service, ...) notifies its node's dispatcher that it has a call to run. The
+dispatcher decides when, and in which thread, it takes the call and runs it. This module contains the dispatcher of the
+launcher's event loop. The executors of rclpy are dispatchers, too (`linkwright.graph.executors`).
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class Entity(Part, ABC):
     Attributes:
         callback_group: decides which entities may run at the same time; the node's default group unless another is
             given.
-        dispatcher: runs its calls; None while the node has none, and after the entity was destroyed.
+        dispatcher: runs the entity's calls; None while the node has none, and after the entity was destroyed.
     """
 
     unblockable = False
@@ -46,17 +46,17 @@ class Entity(Part, ABC):
         self.callback_group = node.default_callback_group if callback_group is None else callback_group
         self.dispatcher: Dispatcher | None = None
         self._announced = False
-        # A user's own group need not derive from rclpy's.
+        # A user's own group need not have rclpy's methods.
         add_entity = getattr(self.callback_group, "add_entity", None)
         if add_entity is not None:
             add_entity(self)
 
     @abstractmethod
     def take(self) -> Callable[[], object] | None:
-        """Remove the next due call from the entity's queue and return it; None if there is none.
+        """Remove the next call from the entity's queue and return it; None if there is none.
 
-        The call may raise any exception of the user's code. It may return a coroutine, which the dispatcher runs to its
-        end.
+        The call may raise any exception of the user's code. It may return a coroutine, which the dispatcher runs to
+        completion.
         """
 
     @abstractmethod
@@ -69,14 +69,14 @@ class Entity(Part, ABC):
         """The description of this entity in log messages."""
 
     def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
-        """Set the dispatcher that runs the calls; pending calls are announced to it."""
+        """Set the dispatcher that runs the calls, and announce pending calls to it."""
         self.dispatcher = dispatcher
         self._announced = False
         if dispatcher is not None and self.has_work():
             self.announce()
 
     def announce(self) -> None:
-        """Notify the dispatcher that there is a call to take, unless it has been notified already."""
+        """Notify the dispatcher that the entity has a call, unless it has been notified already."""
         if not self._announced:
             dispatcher = self.dispatcher
             if dispatcher is not None:
@@ -84,9 +84,9 @@ class Entity(Part, ABC):
                 dispatcher.ready(self)
 
     def _next_of(self, queue: deque[T]) -> T | None:
-        """Remove the oldest item from a queue of the entity and return it; None if the queue is empty.
+        """Remove the oldest item from one of the entity's queues and return it; None if it is empty.
 
-        If items remain, the entity announces them.
+        If items remain in the queue, the entity announces itself again.
         """
         self._announced = False
         try:
@@ -107,14 +107,14 @@ class Entity(Part, ABC):
         super().retire()
 
     def report(self, error: BaseException) -> None:
-        """Log with the node's logger that a call failed."""
+        """Log an error that a call of the entity raised, with the node's logger."""
         log_failure(self.node.logger, self.what, error)
 
 
 class GuardCondition(Entity):
-    """Calls its callback soon after it was triggered.
+    """An entity whose callback is called soon after it is triggered.
 
-    Several triggers in a row result in a single call.
+    Several triggers before the call result in a single call.
     """
 
     def __init__(
@@ -176,10 +176,11 @@ _MOST_TURNS = 1000
 class LoopDispatcher:
     """A dispatcher on the event loop of the thread that creates it.
 
-    Entities take turns: an entity that has more calls after its turn moves to the end of the queue, so that a flood of
-    messages on one topic does not starve the others. In each iteration of the loop the dispatcher runs ready entities
-    for a moment, and then lets the loop serve sockets and timers. Work that becomes ready while a callback runs is run
-    after it, never inside it. Callbacks that are coroutines run as tasks of the loop, which end with their node.
+    Entities are served in rotation: an entity with more calls moves to the end of the queue after each call, so that a
+    flood of messages on one topic does not starve the others. In each iteration of the loop the dispatcher runs ready
+    entities for a limited time, and then lets the loop serve sockets and timers. Work that becomes ready while a
+    callback runs is run afterwards, never inside the callback. Callbacks that are coroutines run as tasks of the
+    loop, which end with their node.
     """
 
     def __init__(self, timebase: Timebase, loop: asyncio.AbstractEventLoop) -> None:
@@ -206,7 +207,7 @@ class LoopDispatcher:
         return threading.get_ident() == self._thread
 
     def ready(self, entity: Entity) -> None:
-        """Run the entity's next call soon; callable from any thread."""
+        """Queue an entity, whose next call then runs in the loop. Callable from any thread."""
         self._ready.append(entity)
         if self._is_scheduled:
             return
@@ -223,7 +224,7 @@ class LoopDispatcher:
         return _AlarmFromElsewhere(self, steady_ns, callback)
 
     def call_threadsafe(self, callback: Callable[[], None]) -> None:
-        """Schedule a callback on the loop, from any thread; does nothing if the loop has ended."""
+        """Schedule a callback on the loop, from any thread. Does nothing if the loop has ended."""
         self._call_threadsafe(callback)
 
     def forget(self, node: NodeHandle) -> None:
@@ -235,8 +236,8 @@ class LoopDispatcher:
     async def settle(self) -> None:
         """Wait until no work is ready, including calls that other calls make ready.
 
-        Other coroutines on the loop get turns until they wait for something; there is a limit for a coroutine that
-        never does.
+        Other coroutines on the loop run, too, until they wait for something. The number of iterations that are granted
+        to them is limited, in case a coroutine never waits.
         """
         await asyncio.sleep(0)
         turns = 0
@@ -245,7 +246,7 @@ class LoopDispatcher:
             await asyncio.sleep(0)
 
     def _others_are_ready(self) -> bool:
-        # asyncio's own loop keeps its queue here; a loop without this attribute is assumed to be idle.
+        # asyncio's own loop has its queue in this attribute; a loop without the attribute is assumed to be idle.
         return bool(getattr(self._loop, "_ready", ()))
 
     def close(self) -> None:
@@ -261,7 +262,7 @@ class LoopDispatcher:
         tasks = [task for task in self._tasks if task is not asyncio.current_task()]
         if tasks:
             await asyncio.gather(*tasks, return_exceptions=True)
-            await asyncio.sleep(0)  # lets the loop drop them, too
+            await asyncio.sleep(0)  # let the loop drop them, too
 
     def _call_threadsafe(self, callback: Callable[[], None]) -> None:
         try:
@@ -275,7 +276,7 @@ class LoopDispatcher:
             self._schedule()
 
     def _alarmed(self, callback: Callable[[], None]) -> None:
-        """Run an alarm and, in the same iteration of the loop, the calls that it makes ready."""
+        """Run an alarm's callback and, in the same loop iteration, the calls that it makes ready."""
         if self._is_scheduled:
             callback()
             return
@@ -363,7 +364,7 @@ class LoopDispatcher:
 
 @dataclass(slots=True)
 class _Hold:
-    """The running coroutines of a callback group, and the entities that wait for them to end."""
+    """The running coroutines of a callback group, and the entities that wait for their end."""
 
     coroutines: int = 0
     waiting: list[Entity] = field(default_factory=list)

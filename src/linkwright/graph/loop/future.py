@@ -1,9 +1,9 @@
 """Futures (rclpy ``Future``), and detection of callbacks that would wait forever.
 
-In rclpy the response to a request is taken in the callback group of its client. While a callback of a mutually
-exclusive group runs, nothing else of that group does, so a callback that blocks until the response arrives blocks
-forever. Here, responses run no code of the user and are accepted anyway. The mistake is logged as an error, before the
-program runs on a robot. If the node's parameter `STRICT` is set, the callback hangs as in rclpy.
+In rclpy the response to a request is processed in the callback group of the client. While one callback of a mutually
+exclusive group runs, no other callback of the group runs, so a callback that blocks until the response arrives blocks
+forever. Here, a response runs no user code and is processed in any case. The mistake is logged as an error, so that it
+is found before the program runs on a robot. If the node's parameter `STRICT` is set, the callback hangs as in rclpy.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _reported: set[tuple[CodeType, str]] = set()
 
 
 class WaitableFuture(Protocol):
-    """The part of a future that this check needs.
+    """The part of a future that the detection needs.
 
     Attributes:
         source: the client whose response the future waits for; None for any other future.
@@ -40,13 +40,13 @@ class WaitableFuture(Protocol):
     source: Any
 
     def ended(self) -> bool:
-        """Return whether the wait is over."""
+        """Return whether the future is done or cancelled."""
 
 
 def report_self_wait(future: WaitableFuture) -> None:
-    """Log an error if the calling thread is in a callback that would wait forever on a robot.
+    """Log an error if the calling thread is in a callback that would wait forever in rclpy.
 
-    Each place in the code is reported once.
+    Each call site is reported once.
 
     Args:
         future: the future to wait for.
@@ -56,7 +56,7 @@ def report_self_wait(future: WaitableFuture) -> None:
         return
     group = client.callback_group
     if not isinstance(group, MutuallyExclusiveCallbackGroup) or group.can_execute(client):
-        return  # nothing of the group runs
+        return  # no callback of the group is running
     frames = list(_frames(sys._getframe(1)))
     running = next((frame for frame in frames if _entity_of(frame) is not None), None)
     if running is None or _entity_of(running).callback_group is not group:
@@ -99,9 +99,9 @@ def is_stepped_by_executor() -> bool:
 
 
 class StepsByExecutor:
-    """A context in which an executor of rclpy, not asyncio, steps the coroutines of this thread.
+    """A context in which an executor, not asyncio, steps the coroutines of this thread.
 
-    An awaited future is then passed to the code that steps, even inside a running event loop.
+    A coroutine that awaits a future then yields the future to the executor, even inside a running event loop.
     """
 
     def __enter__(self) -> None:
@@ -115,8 +115,8 @@ class Future(Generic[T]):
     """A future result, which can be awaited in coroutines of asyncio and of an executor.
 
     Args:
-        executor: runs the done callbacks (its ``create_task(callback, future)``). Without an executor they are called
-            immediately, in the thread that completes the future.
+        executor: runs the done callbacks (through ``create_task(callback, future)``). Without an executor they are
+            called immediately, in the thread that completes the future.
     """
 
     def __init__(self, *, executor: Any = None) -> None:
@@ -152,7 +152,7 @@ class Future(Generic[T]):
         return self._cancelled
 
     def cancel(self) -> None:
-        """Cancel the future: its callbacks are called, and all waits end.
+        """Cancel the future: its done callbacks are called, and all waits end.
 
         Does nothing if the future is done.
         """
@@ -163,10 +163,10 @@ class Future(Generic[T]):
         self._notify()
 
     def result(self) -> T | None:
-        """Return the result; None while there is none.
+        """Return the result; None while the future has none.
 
         Raises:
-            Exception: the exception that the future ended with.
+            Exception: the exception that the future was completed with.
         """
         if self._exception is not None:
             self._exception_fetched = True
@@ -174,7 +174,7 @@ class Future(Generic[T]):
         return self._result
 
     def exception(self) -> BaseException | None:
-        """Return the exception that the future ended with; None if there is none."""
+        """Return the exception that the future was completed with; None if there is none."""
         self._exception_fetched = True
         return self._exception
 
@@ -196,9 +196,9 @@ class Future(Generic[T]):
         self._notify()
 
     def add_done_callback(self, callback: Callable[[Any], object]) -> None:
-        """Register a callback that receives this future when it is done.
+        """Register a callback that receives this future when the future is done.
 
-        It is called immediately if it is done already.
+        If the future is done already, the callback is called immediately.
         """
         with self._lock:
             if not self.ended():
@@ -207,7 +207,7 @@ class Future(Generic[T]):
         self._call(callback)
 
     def remove_done_callback(self, callback: Callable[[Any], object]) -> int:
-        """Unregister a callback; return how many times it was registered."""
+        """Unregister a callback; return how many times the callback was registered."""
         with self._lock:
             kept = [registered for registered in self._callbacks if registered != callback]
             removed = len(self._callbacks) - len(kept)
@@ -219,18 +219,18 @@ class Future(Generic[T]):
         self._executor = executor
 
     def hand_over(self, result: T, dispatcher: Any) -> None:
-        """Complete the future with a result, unless it has ended.
+        """Complete the future with a result, unless the future is done or cancelled.
 
         Args:
             result: the result.
-            dispatcher: the dispatcher of the waiting node; if it is an executor, it runs the done callbacks.
+            dispatcher: the dispatcher of the waiting node; if this is an executor, it runs the done callbacks.
         """
         if not self.ended():
             self._run_callbacks_by(dispatcher)
             self.set_result(result)
 
     def fail(self, exception: BaseException, dispatcher: Any) -> None:
-        """Complete the future with an exception, unless it has ended; see `hand_over`."""
+        """Complete the future with an exception, unless it is done or cancelled; see `hand_over`."""
         if not self.ended():
             self._run_callbacks_by(dispatcher)
             self.set_exception(exception)
@@ -240,9 +240,10 @@ class Future(Generic[T]):
             self.set_executor(dispatcher)
 
     def add_waiter(self, callback: Callable[[], object]) -> None:
-        """Register a callback that is called, in any thread, as soon as the future is done or cancelled.
+        """Register a callback that is called as soon as the future is done or cancelled.
 
-        This is for code that runs coroutines. A callback that is registered already is not added again.
+        The callback runs in the thread that completes or cancels the future. Waiters are for code that runs coroutines.
+        Registering the same callback twice has no effect.
         """
         with self._lock:
             if not self.ended():
@@ -257,7 +258,14 @@ class Future(Generic[T]):
             self._waiters.remove(callback)
 
     def wait(self, timeout_sec: float | None = None) -> bool:
-        """Block the calling thread until the future is done or cancelled; return whether it is."""
+        """Block the calling thread until the future is done or cancelled.
+
+        Args:
+            timeout_sec: the maximum wait, in seconds; None for no limit.
+
+        Returns:
+            Whether the future is done or cancelled.
+        """
         if self.source is not None:
             report_self_wait(self)
         event = threading.Event()

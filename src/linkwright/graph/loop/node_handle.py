@@ -1,6 +1,6 @@
 """The internal handle of a node, behind the API that users see.
 
-It has the node's name, parts, callback groups and dispatcher.
+The handle has the node's name, parts, callback groups and dispatcher.
 
 rcl has such an object as well (``rcl_node_t``), which rclpy's nodes provide as ``node.handle``. Publishers, timers and
 the other parts of a node refer to the handle instead of the node, so a user's node class may have any attributes and
@@ -26,7 +26,7 @@ class CallbackGroup:
     """Decides which of its entities may run; a base class for users' own groups.
 
     An executor calls `can_execute`, then `beginning_execution`, which may still refuse, and finally `ending_execution`.
-    It asks again when a callback has ended.
+    When a callback has ended, the executor calls `can_execute` again for the entities that were refused.
 
     As in rclpy the class is not abstract: programs may instantiate it, and methods that are not overridden raise an
     error.
@@ -38,11 +38,11 @@ class CallbackGroup:
         self._forget = self.entities.discard
 
     def add_entity(self, entity: Any) -> None:
-        """Add an entity of a node to the group, which then decides when its callbacks run."""
+        """Add an entity to the group, which from now on decides when the entity's callbacks run."""
         self.entities.add(weakref.ref(entity, self._forget))
 
     def has_entity(self, entity: Any) -> bool:
-        """Return whether an entity is a member."""
+        """Return whether an entity is a member of the group."""
         return weakref.ref(entity) in self.entities
 
     def can_execute(self, entity: Any) -> bool:
@@ -50,16 +50,16 @@ class CallbackGroup:
         raise NotImplementedError
 
     def beginning_execution(self, entity: Any) -> bool:
-        """Note that a member is about to run; return False if it may not."""
+        """Record that a member is about to run; return False if the member may not run."""
         raise NotImplementedError
 
     def ending_execution(self, entity: Any) -> None:
-        """Note that a member has finished running."""
+        """Record that a member has finished running."""
         raise NotImplementedError
 
 
 class ReentrantCallbackGroup(CallbackGroup):
-    """A group whose callbacks may run at any time, even one callback several times in parallel."""
+    """A group whose callbacks may run at any time, even several times in parallel."""
 
     def can_execute(self, entity: Any) -> bool:
         """Return True: any member may run."""
@@ -74,7 +74,7 @@ class ReentrantCallbackGroup(CallbackGroup):
 
 
 class MutuallyExclusiveCallbackGroup(CallbackGroup):
-    """A group in which one member runs at a time.
+    """A group in which only one member runs at a time.
 
     A coroutine counts as running until it ends, even while it awaits.
     """
@@ -89,7 +89,7 @@ class MutuallyExclusiveCallbackGroup(CallbackGroup):
         return self._active is None
 
     def beginning_execution(self, entity: Any) -> bool:
-        """Let a member run if no other is running; return whether it may."""
+        """Let a member run if no other member is running; return whether it may run."""
         try:
             self._turn.pop()
         except IndexError:
@@ -119,7 +119,7 @@ class Handle:
     """A context that is entered while its owner is in use (rclpy ``handle``).
 
     Args:
-        is_destroyed: returns whether the owner was destroyed.
+        is_destroyed: a function that returns whether the owner was destroyed.
     """
 
     def __init__(self, is_destroyed: Callable[[], bool]) -> None:
@@ -152,7 +152,7 @@ class HasHandle:
     def handle(self) -> Handle:
         """The handle to enter while this object is in use.
 
-        Entering raises InvalidHandleError if the object was destroyed.
+        Entering the handle raises InvalidHandleError if the object was destroyed.
         """
         found = _handles.get(self)
         if found is None:
@@ -174,21 +174,21 @@ class Dispatcher(AlarmSetter, Protocol):
     """
 
     def ready(self, entity: Any) -> None:
-        """Note that an `Entity` has at least one call to be taken.
+        """Queue an `Entity` that has at least one call.
 
         An entity announces itself when its queue was empty before, and again from within `Entity.take` while more calls
-        remain, so nothing accumulates here during a flood of messages. An entity that has another ``dispatcher`` by the
-        time of its turn is skipped.
+        remain, so the dispatcher's queue does not grow during a flood of messages. An entity whose ``dispatcher`` has
+        changed before it is served is skipped.
         """
 
 
 class HomeGraph(Protocol):
-    """The interface of a graph that its nodes and their parts need."""
+    """The part of a graph that its nodes and their parts need."""
 
     timebase: Timebase
 
     def add(self, endpoint: Any) -> None:
-        """Connect a new endpoint with those of the same name."""
+        """Connect a new endpoint to the endpoints with the same name."""
 
     def remove(self, endpoint: Any) -> None:
         """Remove an endpoint."""
@@ -197,21 +197,21 @@ class HomeGraph(Protocol):
         """Remove a node that was destroyed."""
 
     def notify_change(self) -> None:
-        """Wake the threads blocked in `wait_until` to check their conditions again."""
+        """Wake the threads blocked in `wait_until`, which check their conditions again."""
 
     def wait_until(self, holds: Callable[[], bool], timeout_sec: float | None = None) -> bool:
-        """Block the calling thread until a condition of the graph holds; return whether it does."""
+        """Block the calling thread until a condition of the graph holds; return whether it holds."""
 
     def watch_lost(self) -> None:
-        """Start to notify subscriptions of lost publishers of their topics."""
+        """Start notifying subscriptions of lost publishers of their topics."""
 
 
 class Part(HasHandle):
     """A part of a node, such as an endpoint or a timer. Leaving its ``with`` block destroys it.
 
     Attributes:
-        node: the node that it belongs to.
-        destroyed: whether it was removed from the node.
+        node: the node that owns the part.
+        destroyed: whether the part was removed from the node.
     """
 
     node: NodeHandle
@@ -221,17 +221,17 @@ class Part(HasHandle):
     """Whether it outlives the other parts of a node that is destroyed, which may use it."""
 
     def begin(self) -> None:
-        """Start operating, after the node has added the part."""
+        """Start operating. Called after the node has added the part."""
 
     def retire(self) -> None:
-        """Stop operating, when the node removes the part."""
+        """Stop operating. Called when the node removes the part."""
         self.destroyed = True
 
     def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
-        """Set the dispatcher that runs its callbacks."""
+        """Set the dispatcher that runs the part's callbacks."""
 
     def destroy(self) -> None:
-        """Remove the part from the graph and the node; its callbacks are not called again."""
+        """Remove the part from the graph and the node; the part's callbacks are not called again."""
         self.node.remove(self)
 
     def check_alive(self) -> None:
@@ -255,15 +255,16 @@ class NodeHandle(Handle):
         remappings: the node's rules for names of topics and services.
         logger: the node's logger.
         dispatcher: runs the node's callbacks; None while there is none.
-        copies_messages: whether its messages are copied, so that their sender may change them afterwards.
-        stays_inside: whether it is hidden, with all its endpoints, from other processes.
+        copies_messages: whether messages are copied, so that the node may change a message after publishing it.
+        stays_inside: whether the node and its endpoints are hidden from other processes.
 
     Attributes:
         timebase: the time of the graph.
         default_callback_group: the group of entities that are in no other group.
-        intake: called with each subscription of the node and each message that arrives for it, in any thread. The
-            message is queued for the callback only if it returns True. None queues all messages.
-        strict_callback_groups: whether responses to its requests wait for the callback group of the client.
+        message_filter: called, in any thread, with a subscription of the node and a message that arrives for it;
+            returns whether to queue the message for the callback. None queues all messages.
+        strict_callback_groups: whether a response waits until the callback group of the client allows it to run, as in
+            rclpy.
     """
 
     def __init__(
@@ -301,14 +302,14 @@ class NodeHandle(Handle):
     def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
         """Set the dispatcher that runs the node's callbacks; None for no dispatcher.
 
-        Calls that become due while there is none wait as their QoS specifies; the next dispatcher is notified of them.
+        Without a dispatcher, calls stay queued as far as their QoS allows. The next dispatcher is notified of them.
         """
         self.dispatcher = dispatcher
         for part in tuple(self._parts):
             part.set_dispatcher(dispatcher)
 
     def add(self, part: P) -> P:
-        """Add a part to the node and return it; the node's dispatcher runs its callbacks.
+        """Add a part to the node and return the part; the node's dispatcher runs its callbacks.
 
         Raises:
             InvalidHandleError: the node was destroyed.
@@ -319,7 +320,7 @@ class NodeHandle(Handle):
         return part
 
     def remove(self, part: Part) -> bool:
-        """Remove a part from the node permanently; return whether it belonged to this node."""
+        """Remove a part from the node permanently; return whether the part belonged to this node."""
         if part not in self._parts:
             return False
         del self._parts[part]
@@ -327,7 +328,7 @@ class NodeHandle(Handle):
         return True
 
     def parts(self, kind: type[P]) -> tuple[P, ...]:
-        """Return the parts of a kind, in order of creation."""
+        """Return the node's parts of one class, in order of creation."""
         return tuple(part for part in tuple(self._parts) if isinstance(part, kind))
 
     def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
@@ -353,7 +354,7 @@ class NodeHandle(Handle):
     def add_cleanup(self, callback: Callable[[], object]) -> None:
         """Register a callback that is called before the node's parts are destroyed.
 
-        The last one added is called first.
+        Cleanups run in the reverse order of their registration.
         """
         self._cleanups[callback] = None
 

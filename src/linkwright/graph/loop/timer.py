@@ -1,4 +1,4 @@
-"""Timers, which call back at a fixed period, and rates, which sleep until a timer's next tick."""
+"""Timers, which call back at a fixed period, and rates, which sleep until the next tick."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from linkwright.graph.time.values import ClockType, Time
 
 @dataclass(frozen=True, init=False)
 class TimerInfo:
-    """The times at which a timer's call was due and made (rclpy ``TimerInfo``).
+    """The expected and the actual time of a timer's call (rclpy ``TimerInfo``).
 
     Args:
-        expected_call_time: nanoseconds, or a point in time.
-        actual_call_time: nanoseconds, or a point in time.
+        expected_call_time: in nanoseconds, or as a point in time.
+        actual_call_time: in nanoseconds, or as a point in time.
         clock_type: the type of the clock to which times in nanoseconds refer.
     """
 
@@ -42,7 +42,7 @@ class TimerInfo:
 
 
 class Timer(Entity):
-    """Calls back at a fixed period, counted from its start: a late call does not shift the next one.
+    """Calls back at a fixed period. A late call does not shift the next one.
 
     As in rcl, calls that were missed entirely are skipped. The period is measured on the timer's clock, which may be a
     ROS clock that follows simulated time.
@@ -50,10 +50,10 @@ class Timer(Entity):
     Args:
         node: the node that owns the timer.
         callback: called without arguments, or with a `TimerInfo` if it takes one.
-        period_ns: the period; 0 calls whenever there is nothing else to do.
+        period_ns: the period in nanoseconds; 0 calls whenever there is nothing else to do.
         clock: the clock that measures the period.
         callback_group: decides which entities may run at the same time.
-        autostart: whether it runs from the start; otherwise `reset` starts it.
+        autostart: whether the timer runs from the start; otherwise `reset` starts it.
 
     Raises:
         ValueError: the period is negative.
@@ -135,7 +135,8 @@ class Timer(Entity):
         self._running = True
         self._last_ns = self.clock.timer_ns()
         self._due_ns = self._last_ns + self._period_ns
-        # An alarm that fires too early sets itself again, so a timer that is reset with each message need not set one
+        # An alarm that fires too early sets itself again, so a timer that is reset with each message does not need a
+        # new alarm
         # each time.
         if self._alarm is None or self._alarm_ns > self._due_ns:
             self._disarm_alarm()
@@ -146,14 +147,14 @@ class Timer(Entity):
         return self.clock.timer_ns() - self._last_ns
 
     def time_until_next_call(self) -> int | None:
-        """Return the nanoseconds until the next call, negative if it is late.
+        """Return the nanoseconds until the next call; negative if the call is late.
 
-        The result is None if the timer is stopped.
+        Returns None if the timer is stopped.
         """
         return self._due_ns - self.clock.timer_ns() if self._running else None
 
     def next_call_ns(self) -> int:
-        """Return the time at which the next call is due, by `Clock.timer_ns` of the timer's clock."""
+        """Return when the next call is due, in nanoseconds of the clock's `Clock.timer_ns`."""
         return self._due_ns
 
     def retire(self) -> None:
@@ -165,7 +166,7 @@ class Timer(Entity):
     def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
         """Set the dispatcher that runs the calls.
 
-        Calls that became due without a dispatcher are made once.
+        Calls that became due while there was no dispatcher result in a single call.
         """
         self._disarm()
         super().set_dispatcher(dispatcher)
@@ -177,7 +178,7 @@ class Timer(Entity):
         return self._due
 
     def take(self) -> Callable[[], object] | None:
-        """Return the call that is due; None if there is none."""
+        """Return the call of the callback that is due; None if there is none."""
         self._announced = False
         if not self._due:
             return None
@@ -201,12 +202,12 @@ class Timer(Entity):
         )
 
     def before_switch(self) -> None:
-        """Save the rest of the period before the clock changes its time source."""
+        """Save the remaining time to the next call before the clock changes its time source."""
         self._rest_ns = min(max(self._due_ns - self.clock.timer_ns(), 0), self._period_ns)
         self._disarm_alarm()
 
     def after_switch(self) -> None:
-        """Continue with the rest of the period after the clock has changed its time source."""
+        """Continue with the remaining time after the clock has changed its time source."""
         self._due_ns = self.clock.timer_ns() + self._rest_ns
         self._last_ns = self._due_ns - self._period_ns
         if self._running and not self._due:
@@ -260,8 +261,8 @@ def _check_period(period_ns: int) -> None:
 class Rate:
     """Lets a loop run at a fixed rate: each `sleep` ends with the next tick of a timer.
 
-    The timer's callbacks must be run by another thread than the sleeping one; a coroutine calls `wait`. A late tick
-    does not shift the ticks after it.
+    Another thread than the sleeping one must run the timer's callbacks. A coroutine calls `wait` instead of `sleep`. A
+    late tick does not shift the ticks after it.
 
     Args:
         timer: the timer that ticks; the rate replaces its callback.
@@ -294,14 +295,14 @@ class Rate:
         self._end()
 
     def wake(self) -> None:
-        """End all current and future sleeps."""
+        """End all current and future sleeps on this rate."""
         self._ended = True
         self._beat()
 
     def destroy(self) -> bool:
         """Destroy the rate, and wake the threads that sleep on it.
 
-        Returns whether it existed before the call.
+        Returns False if the rate was already destroyed.
         """
         self.wake()
         self.timer.node.remove_cleanup(self.wake)

@@ -1,1 +1,1 @@
-"""Names in the graph: validation, expansion, remapping, and regular expressions that match them."""
+"""Names in the graph: validation, expansion, remapping, and matching by regular expressions."""

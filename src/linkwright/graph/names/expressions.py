@@ -1,4 +1,4 @@
-"""Regular expressions from files and pages, with a limit on the time that a search may take."""
+"""Regular expressions from files and pages, with a time limit for each search."""
 
 from __future__ import annotations
 
@@ -19,26 +19,26 @@ _MOST_CHARACTERS = 2000
 
 
 class ExpressionError(ValueError):
-    """Raised when a text is not a valid regular expression; the message is the reason."""
+    """Raised when a text is not a valid regular expression. The message is the reason."""
 
 
 class TooCostlyError(ExpressionError):
-    """Raised when a search takes too long."""
+    """Raised when a search exceeds the time limit."""
 
 
 class Expression:
     """A regular expression for names (decision 0020).
 
     Args:
-        text: the expression, in the syntax of the library ``regex``: that of Python's `re`, including everything that
-            it has in common with ECMAScript.
+        text: the expression, in the syntax of the library ``regex``. This is the syntax of Python's `re`, which
+            includes everything that `re` has in common with ECMAScript.
 
     Raises:
-        ExpressionError: the text is not a valid expression.
+        ExpressionError: the text is too long, or is not a valid expression.
     """
 
     def __init__(self, text: str) -> None:
-        import regex  # imported here: few files have expressions
+        import regex  # few files have expressions
 
         if len(text) > _MOST_CHARACTERS:
             raise ExpressionError(f"it has {len(text)} characters, more than {_MOST_CHARACTERS}")
@@ -59,7 +59,7 @@ class Expression:
             raise TooCostlyError("it takes too long to find") from None
 
     def found_in(self, names: Iterable[str]) -> set[str]:
-        """Return the names in which the expression is found, as by C++'s `regex_search`.
+        """Return the names that contain a match of the expression, as by C++'s `regex_search`.
 
         Raises:
             TooCostlyError: the search takes too long in total.

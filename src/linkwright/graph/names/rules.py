@@ -1,4 +1,4 @@
-"""The rules for names in the graph: which are valid, and how they are expanded and remapped.
+"""The rules for names in the graph: validation, expansion and remapping.
 
 The rules and the wording of the errors are those of rcl and rmw (``validate_topic_name``, ``expand_topic_name``).
 """
@@ -28,12 +28,12 @@ class InvalidNameError(LinkwrightError, ValueError):
     Args:
         kind: ``node name``, ``namespace``, ``topic name`` or ``service name``.
         name: the name as it was given.
-        error_msg: the mistake in it.
+        error_msg: the mistake in the name.
         invalid_index: the index of the invalid character.
 
     Attributes:
         name: the name as it was given.
-        error_msg: the mistake in it.
+        error_msg: the mistake in the name.
         invalid_index: the index of the invalid character.
     """
 
@@ -79,7 +79,7 @@ class InvalidServiceNameError(InvalidNameError):
 
 
 def node_name_problem(name: str) -> Problem | None:
-    """Return the reason why a node name is not valid; None if it is valid."""
+    """Return why a node name is not valid, and the index of the mistake; None if it is valid."""
     if not name:
         return phrase("node name must not be empty"), 0
     if odd := re.search(r"[^A-Za-z0-9_]", name):
@@ -101,7 +101,10 @@ def check_node_name(name: str) -> None:
 
 
 def namespace_problem(namespace: str) -> Problem | None:
-    """Return the reason why an absolute namespace is not valid; None if it is valid."""
+    """Return why an absolute namespace is not valid, and the index of the mistake.
+
+    Returns None if the namespace is valid.
+    """
     if not namespace:
         return phrase("namespace must not be empty"), 0
     if not namespace.startswith("/"):
@@ -124,7 +127,7 @@ def namespace_problem(namespace: str) -> Problem | None:
 
 
 def absolute_namespace(namespace: str) -> str:
-    """Return a namespace with its leading slash, which may be left out; ``/`` for an empty one.
+    """Return a namespace, to which a missing leading slash is added; ``/`` for an empty one.
 
     Raises:
         InvalidNamespaceError: the namespace is not valid.
@@ -137,12 +140,12 @@ def absolute_namespace(namespace: str) -> str:
 
 
 def join(namespace: str, name: str) -> str:
-    """Return the full name of an entity in a namespace."""
+    """Join a namespace and a name to a full name."""
     return f"/{name}" if namespace == "/" else f"{namespace}/{name}"
 
 
 def split(full_name: str) -> tuple[str, str]:
-    """Split a full name into namespace and name."""
+    """Split a full name into its absolute namespace and its name."""
     namespace, _, name = full_name.rpartition("/")
     return namespace or "/", name
 
@@ -154,9 +157,9 @@ def is_hidden(name: str) -> bool:
 
 @lru_cache(maxsize=4096)
 def topic_name_problem(name: str) -> Problem | None:
-    """Return the reason why a topic or service name is not valid before expansion.
+    """Return why a topic or service name is not valid before expansion, and the mistake's index.
 
-    The result is None if it is valid.
+    Returns None if the name is valid.
     """
     bare = _SUBSTITUTION.sub(lambda match: "x" * len(match[0]), name) if "{" in name else name
     if not name:
@@ -186,12 +189,12 @@ def topic_name_problem(name: str) -> Problem | None:
 
 
 def expand_topic_name(name: str, node_name: str, namespace: str) -> str:
-    """Return the absolute name of a topic that a node names.
+    """Return the absolute name of a topic, expanded for a node.
 
     The name may be relative, ``/absolute`` or ``~/private``, and may contain ``{node}`` and ``{ns}``.
 
     Args:
-        name: the name as the node's code gives it.
+        name: the name as written in the node's code.
         node_name: the node's name without its namespace.
         namespace: the node's namespace, absolute.
 
@@ -202,7 +205,7 @@ def expand_topic_name(name: str, node_name: str, namespace: str) -> str:
 
 
 def expand_service_name(name: str, node_name: str, namespace: str) -> str:
-    """Return the absolute name of a service or action that a node names; see `expand_topic_name`.
+    """Return the absolute name of a service or action, expanded as by `expand_topic_name`.
 
     Raises:
         InvalidServiceNameError: the name is not valid.
@@ -256,7 +259,7 @@ class NodeIdentity:
 
     @property
     def full_name(self) -> str:
-        """The namespace and name."""
+        """The absolute namespace joined with the name."""
         return join(self.namespace, self.name)
 
 
@@ -271,9 +274,9 @@ class _Rule:
 
     Attributes:
         node: the only node that the rule applies to; None for all nodes.
-        kind: ``rostopic://`` or ``rosservice://`` for a rule for one kind of names; empty for both.
+        kind: ``rostopic://`` or ``rosservice://`` for a rule for topics or services only; empty for both.
         source: the name to replace, as written.
-        target: the name to use instead, as written.
+        target: the new name, as written.
     """
 
     node: str | None
@@ -283,10 +286,10 @@ class _Rule:
 
 
 class Remappings:
-    """A node's remapping rules, the first of which that matches a name is applied.
+    """A node's remapping rules. The first rule that matches a name is applied.
 
     ``__node`` (or ``__name``) and ``__ns`` rename the node itself. A rule may start with the name of the node that it
-    applies to (``talker:chatter``), and with ``rostopic://`` or ``rosservice://`` for names of one kind.
+    applies to (``talker:chatter``). The prefix ``rostopic://`` or ``rosservice://`` restricts it to topics or services.
 
     Args:
         rules: the two sides of each rule, ``from`` and ``to``.
@@ -301,19 +304,19 @@ class Remappings:
         self._rules = tuple(_taken_apart(source, target) for source, target in rules)
 
     def node_name(self, name: str) -> str:
-        """Return the node name to use instead of the one that the code gives."""
+        """Return the remapped name of a node; the given name if no rule applies."""
         return next((r.target for r in self._rules if r.source in _NODE_NAMES and r.node in (None, name)), name)
 
     def namespace(self, namespace: str, node_name: str) -> str:
-        """Return the namespace to use instead of the one that the code gives."""
+        """Return the remapped namespace of a node; the given namespace if no rule applies."""
         return next(
             (r.target for r in self._rules if r.source == _NAMESPACE and r.node in (None, node_name)), namespace
         )
 
     def topic(self, full_name: str, node_name: str, namespace: str) -> str:
-        """Return the topic to use instead of an expanded one.
+        """Return the remapped absolute name of a topic; `full_name` if no rule applies.
 
-        Both sides of a rule are expanded like the node's own names.
+        Both sides of a rule are expanded in the same way as the node's own names.
 
         Raises:
             InvalidTopicNameError: a side of a rule is not a valid topic name.
@@ -326,7 +329,7 @@ class Remappings:
         return full_name
 
     def service(self, full_name: str, node_name: str, namespace: str) -> str:
-        """Return the service to use instead of an expanded one.
+        """Return the remapped absolute name of a service; `full_name` if no rule applies.
 
         Raises:
             InvalidServiceNameError: a side of a rule is not a valid name.

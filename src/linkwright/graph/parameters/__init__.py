@@ -1,1 +1,1 @@
-"""Node parameters: their values, rules, services, events and files."""
+"""Node parameters: values, constraints, services, events and files."""

@@ -28,9 +28,10 @@ Done = Callable[..., Any]
 
 
 class AsyncParameterClient:
-    """Reads and sets the parameters of a node through its services.
+    """Reads and sets the parameters of another node through its services.
 
-    Each method that sends a request returns a future of the service's response, and accepts a callback for it.
+    Each method that sends a request returns a future that gets the service's response. The optional callback of the
+    method is called when the future is done.
 
     Args:
         node: the node that owns the service clients.
@@ -59,11 +60,11 @@ class AsyncParameterClient:
         }
 
     def services_are_ready(self) -> bool:
-        """Return whether the node offers all parameter services."""
+        """Return whether all parameter services of the other node are available."""
         return all(client.service_is_ready() for client in self._clients.values())
 
     def wait_for_services(self, timeout_sec: float | None = None) -> bool:
-        """Block the calling thread until the node offers all parameter services.
+        """Block the calling thread until all parameter services of the other node are available.
 
         No other thread needs to spin.
 
@@ -71,7 +72,7 @@ class AsyncParameterClient:
             timeout_sec: the maximum wait, in seconds; None for no limit.
 
         Returns:
-            Whether it offers them.
+            Whether all services are available.
         """
         end = None if timeout_sec is None else time.monotonic() + timeout_sec
         while not self.services_are_ready():
@@ -81,7 +82,7 @@ class AsyncParameterClient:
         return True
 
     def destroy(self) -> None:
-        """Destroy the clients of the services."""
+        """Destroy the service clients."""
         for client in self._clients.values():
             self.node.destroy_client(client)
         self._clients.clear()
@@ -105,27 +106,27 @@ class AsyncParameterClient:
         return self._ask("describe_parameters", callback, names=names)
 
     def set_parameters(self, parameters: Sequence[Any], callback: Done | None = None) -> Future[Any]:
-        """Set parameters one by one, given as `Parameter` objects or messages."""
+        """Set parameters one by one. Each is a `Parameter` or a rcl_interfaces/msg/Parameter."""
         return self._ask("set_parameters", callback, parameters=_messages(parameters))
 
     def set_parameters_atomically(self, parameters: Sequence[Any], callback: Done | None = None) -> Future[Any]:
-        """Set either all of the parameters or none."""
+        """Set either all of the given parameters or none."""
         return self._ask("set_parameters_atomically", callback, parameters=_messages(parameters))
 
     def delete_parameters(self, names: list[str], callback: Done | None = None) -> Future[Any]:
-        """Undeclare parameters, which must have dynamic typing."""
+        """Undeclare parameters, whose descriptors must allow dynamic typing."""
         return self.set_parameters([Parameter(name) for name in names], callback)
 
     def load_parameter_file(
         self, parameter_file: str, use_wildcard: bool = False, callback: Done | None = None
     ) -> Future[Any]:
-        """Set the parameters from a file; see `parameter_dict_from_yaml_file`."""
+        """Set the parameters that a file contains; see `parameter_dict_from_yaml_file`."""
         return self.set_parameters(list(parameter_dict_from_yaml_file(parameter_file, use_wildcard).values()), callback)
 
     def load_parameter_file_atomically(
         self, parameter_file: str, use_wildcard: bool = False, callback: Done | None = None
     ) -> Future[Any]:
-        """Set either all of the parameters from a file or none."""
+        """Set either all of the parameters that a file contains or none."""
         parameters = parameter_dict_from_yaml_file(parameter_file, use_wildcard)
         return self.set_parameters_atomically(list(parameters.values()), callback)
 
@@ -150,7 +151,7 @@ class AsyncParameterClient:
 def parameter_dict_from_yaml_file(
     parameter_file: str, use_wildcard: bool = False, target_nodes: list[str] | None = None, namespace: str = ""
 ) -> dict[str, Any]:
-    """Return the parameters in a file as messages (rcl_interfaces/msg/Parameter), by name.
+    """Return the parameters in a file as rcl_interfaces/msg/Parameter messages, by name.
 
     Args:
         parameter_file: the path of the file.

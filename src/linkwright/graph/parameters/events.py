@@ -15,7 +15,7 @@ H = TypeVar("H")
 
 @dataclass(eq=False)
 class ParameterCallbackHandle:
-    """The handle of a callback for one parameter of one node, needed to remove it."""
+    """The handle of a callback for one parameter of one node, with which it can be removed."""
 
     parameter_name: str
     node_name: str
@@ -24,7 +24,7 @@ class ParameterCallbackHandle:
 
 @dataclass(eq=False)
 class ParameterEventCallbackHandle:
-    """The handle of a callback for all events, needed to remove it."""
+    """The handle of a callback for all events, with which the callback can be removed."""
 
     callback: Callable[[Any], object]
 
@@ -33,7 +33,7 @@ class _Callbacks:
     """The callbacks of a `ParameterEventHandler`, in the reverse order of their registration.
 
     Attributes:
-        parameter_callbacks: the callbacks for single parameters, by the names of parameter and node.
+        parameter_callbacks: the callbacks for single parameters, by parameter name and node name.
         event_callbacks: the callbacks for all events.
     """
 
@@ -45,14 +45,14 @@ class _Callbacks:
     def add_parameter_callback(
         self, parameter_name: str, node_name: str, callback: Callable[[Any], object]
     ) -> ParameterCallbackHandle:
-        """Add a callback for one parameter of one node, given by its full name."""
+        """Add a callback for one parameter of the node with the full name `node_name`."""
         handle = ParameterCallbackHandle(parameter_name, node_name, callback)
         with self._lock:
             self.parameter_callbacks.setdefault((parameter_name, node_name), []).insert(0, handle)
         return handle
 
     def remove_parameter_callback(self, handle: ParameterCallbackHandle) -> None:
-        """Remove a callback; raise RuntimeError if it is not registered."""
+        """Remove a callback for one parameter; raise RuntimeError if it is not registered."""
         key = (handle.parameter_name, handle.node_name)
         with self._lock:
             _remove(handle, self.parameter_callbacks.get(key, []))
@@ -67,12 +67,12 @@ class _Callbacks:
         return handle
 
     def remove_parameter_event_callback(self, handle: ParameterEventCallbackHandle) -> None:
-        """Remove a callback; raise RuntimeError if it is not registered."""
+        """Remove a callback for all events; raise RuntimeError if it is not registered."""
         with self._lock:
             _remove(handle, self.event_callbacks)
 
     def event_callback(self, event: Any) -> None:
-        """Call the callbacks that an event applies to."""
+        """Call the callbacks of the parameters in an event, then the callbacks for all events."""
         with self._lock:
             of_parameters = [handle for handles in self.parameter_callbacks.values() for handle in handles]
             of_events = list(self.event_callbacks)
@@ -91,9 +91,9 @@ def _remove(handle: H, handles: list[H]) -> None:
 
 
 class ParameterEventHandler:
-    """Calls callbacks for the events of ``/parameter_events``, or for single parameters in them.
+    """Calls callbacks for the events on ``/parameter_events``, or for single parameters in them.
 
-    Callbacks that were added last are called first.
+    Callbacks are called in the reverse order of their registration.
 
     Args:
         node: the node that owns the subscription.
@@ -121,18 +121,18 @@ class ParameterEventHandler:
     def add_parameter_callback(
         self, parameter_name: str, node_name: str, callback: Callable[[Any], object]
     ) -> ParameterCallbackHandle:
-        """Register a callback that receives the rcl_interfaces/msg/Parameter whenever a parameter is set.
+        """Register a callback for one parameter of one node.
 
         Args:
             parameter_name: the name of the parameter.
             node_name: the node that has the parameter: absolute, relative to our node's namespace, or empty for our
                 node.
-            callback: the callback.
+            callback: called with the rcl_interfaces/msg/Parameter whenever the parameter is set.
         """
         return self._callbacks.add_parameter_callback(parameter_name, self._resolve_path(node_name), callback)
 
     def remove_parameter_callback(self, handle: ParameterCallbackHandle) -> None:
-        """Remove a callback.
+        """Remove a callback for one parameter.
 
         Raises:
             RuntimeError: the callback is not registered.
@@ -144,7 +144,7 @@ class ParameterEventHandler:
         return self._callbacks.add_parameter_event_callback(callback)
 
     def remove_parameter_event_callback(self, handle: ParameterEventCallbackHandle) -> None:
-        """Remove a callback.
+        """Remove a callback for all events.
 
         Raises:
             RuntimeError: the callback is not registered.
@@ -155,7 +155,7 @@ class ParameterEventHandler:
     def get_parameter_from_event(event: Any, parameter_name: str, node_name: str) -> Any:
         """Return the new value of a parameter in an event, as rcl_interfaces/msg/Parameter.
 
-        The result is None if the event has none.
+        Returns None if the event does not contain the parameter.
         """
         if event.node == node_name:
             for parameter in chain(event.new_parameters, event.changed_parameters):
@@ -165,13 +165,14 @@ class ParameterEventHandler:
 
     @staticmethod
     def get_parameters_from_event(event: Any) -> Iterator[Any]:
-        """Iterate over all parameters that an event reports as new or changed."""
+        """Iterate over the parameters that an event reports as new or changed."""
         yield from chain(event.new_parameters, event.changed_parameters)
 
     def _resolve_path(self, node_path: str = "") -> str:
         """Return the full name of a node.
 
-        The path is absolute, relative to our node's namespace, or empty for our node.
+        Args:
+            node_path: absolute, relative to our node's namespace, or empty for our node.
         """
         if not node_path:
             return str(self.node.get_fully_qualified_name())

@@ -1,9 +1,11 @@
 """Parameter files: YAML with node names and, below ``ros__parameters``, parameter values.
 
 Files are read as by rcl_yaml_param_parser: nested names of namespaces and nodes, nested parameter names, its rules for
-scalars (see `scalar_value`), lists of a single type, no anchors. A file that it would refuse is refused here, with the
-position of the mistake. Only a parameter whose list contains lists or mappings is left out instead, because the files
-of real robots have such lists. `parameter_file_text` writes a file, as ``ros2 param dump`` does.
+scalars (see `scalar_value`), lists of a single type, no anchors. A file that rcl_yaml_param_parser would refuse is
+refused here, too, with the position of the mistake. There is one exception: a parameter whose list contains lists or
+mappings is left out, because the files of real robots have such lists.
+
+`parameter_file_text` returns the content of a file, as ``ros2 param dump`` writes it.
 """
 
 from __future__ import annotations
@@ -39,7 +41,7 @@ def read_parameter_file(path: str | Path) -> ParameterRules:
 
     Raises:
         ParameterFileNotFoundError: GRAPH211, the file does not exist.
-        LinkwrightError: GRAPH211 if it cannot be read, GRAPH212 if its content is not a parameter file.
+        LinkwrightError: GRAPH211, the file cannot be read; GRAPH212, its content is not a parameter file.
     """
     path = Path(path)
     shown = display_path(path)
@@ -78,14 +80,12 @@ def parse_parameters(source: SourceText) -> ParameterRules:
 def parse_value(text: str, name: str) -> Any:
     """Parse a parameter value on the command line (``-p name:=value``).
 
-    It is a scalar, or a list of one type.
-
     Args:
-        text: the value.
+        text: the value: a scalar, or a list of one type.
         name: the parameter's name, for the error message.
 
     Raises:
-        LinkwrightError: GRAPH212, the text is neither.
+        LinkwrightError: GRAPH212, the text is neither a scalar nor a list of one type.
     """
     return _Reader(SourceText(f"<{name}>", text)).read_value(name)
 
@@ -95,7 +95,7 @@ class _NestedListError(LinkwrightError):
 
 
 class _Reader:
-    """Reads the YAML events of a text; `_event` is the current event."""
+    """Reads the YAML events of a parameter file; `_event` is the current event."""
 
     def __init__(self, source: SourceText) -> None:
         self._source = source
@@ -149,7 +149,7 @@ class _Reader:
     def _read_names(self, above: tuple[str, ...]) -> None:
         """Read a mapping of namespaces, node names and ``ros__parameters``.
 
-        The current event is its start.
+        The current event is the start of the mapping.
         """
         self._advance()
         while not self._is("MappingEnd"):
@@ -182,7 +182,7 @@ class _Reader:
             self._advance()
 
     def _read_parameters(self, prefix: str, pattern: str) -> None:
-        """Read a mapping of parameter names; the current event is its start."""
+        """Read a mapping of parameter names. The current event is the start of the mapping."""
         self._advance()
         while not self._is("MappingEnd"):
             name = prefix + self._read_key()
@@ -196,9 +196,9 @@ class _Reader:
             self._advance()
 
     def _take_list(self, name: str, pattern: str) -> None:
-        """Read a list and set the parameter.
+        """Read a list and set the parameter to it.
 
-        Leave the parameter out if the list contains lists or mappings.
+        If the list contains lists or mappings, the parameter is left out.
         """
         try:
             self._rules.set(pattern, name, self._read_list(name))
@@ -210,7 +210,7 @@ class _Reader:
             self._skip_rest_of_list()
 
     def _skip_rest_of_list(self) -> None:
-        """Advance to the end of a list; the current event is the start of a nested list or mapping."""
+        """Advance to the end of a list. The current event is the start of a nested list or mapping."""
         depth = 2
         while depth:
             self._advance()
@@ -333,12 +333,13 @@ _MIN, _MAX = -(2**63), 2**63 - 1
 def scalar_value(text: str, *, plain: bool) -> Any:
     """Return the value of a YAML scalar by the rules of rcl_yaml_param_parser.
 
-    The value is a bool, int, float or str. Booleans are those of YAML 1.1, including ``y`` and ``n``. Numbers are texts
-    that C's ``strtol`` (any base) or ``strtod`` reads entirely. Everything else, including quoted numbers, is a string.
+    The value is a bool, int, float or str. Booleans are those of YAML 1.1, including ``y`` and ``n``. A number is a
+    text that C's ``strtol`` (any base) or ``strtod`` consumes entirely. Everything else, including quoted numbers,
+    is a string.
 
     Args:
-        text: the scalar.
-        plain: whether it is written without quotes.
+        text: the content of the scalar.
+        plain: whether the scalar is written without quotes.
     """
     if not plain:
         return text
@@ -397,9 +398,9 @@ def plain_value(value: Any) -> Any:
 
 
 def _insert(tree: dict[str, Any], path: list[str], value: Any) -> None:
-    """Insert a value below the parts of its name.
+    """Insert a value into nested mappings, below the parts of its name.
 
-    If a part has a value itself, the name is not split there.
+    If a part already has a value that is not a mapping, the rest of the name stays dotted.
     """
     for at, part in enumerate(path[:-1]):
         below = tree.setdefault(part, {})

@@ -1,4 +1,4 @@
-"""A node's parameter methods, as in ``rclpy.node.Node``, and its parameter services and events."""
+"""A node's parameter methods, as in ``rclpy.node.Node``, parameter services and events."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ from linkwright.graph.time.clock import Clock
 class NodeParameters:
     """The parameter methods of a node; base class of `Node`.
 
-    Descriptors, results and parameter values are accepted as our own small classes and as messages of rcl_interfaces.
-    Return values are messages, as in rclpy.
+    Descriptors, results and parameter values are accepted as Linkwright's own small classes and as messages of
+    rcl_interfaces. Return values are messages, as in rclpy.
     """
 
     def __init__(self, parameters: ParameterStore) -> None:
-        # The name is mangled so that a user's node class may use the plain name.
+        # The attribute has a mangled name, so that a user's node class may use the plain name.
         self.__parameters = parameters
 
     def declare_parameter(
@@ -45,7 +45,7 @@ class NodeParameters:
     ) -> Parameter:
         """Declare a parameter.
 
-        Its value is the override that the node was started with, or else the default.
+        The parameter's value is the override that the node was started with, or else the default.
 
         Args:
             name: the parameter's name.
@@ -78,15 +78,15 @@ class NodeParameters:
                 descriptor.
             ignore_override: whether to ignore overrides.
 
-        Raises:
-            TypeError: a tuple has another form.
-            ParameterAlreadyDeclaredException: some parameters are declared already; names all of them, and none is
-                declared.
-            ParameterException: as for `declare_parameter`; parameters that were declared before the error stay
-                declared.
-
         Returns:
             A parameter for each tuple. If two tuples have the same name, the last one applies.
+
+        Raises:
+            TypeError: a tuple has another form.
+            ParameterAlreadyDeclaredException: some parameters are declared already. The error names all of them, and no
+                parameter is declared.
+            ParameterException: as for `declare_parameter`. Parameters that were declared before the error stay
+                declared.
         """
         checked = [_checked(index, declaration) for index, declaration in enumerate(parameters)]
         names = [f"{namespace}.{name}" if namespace else name for name, *_ in checked]
@@ -102,12 +102,12 @@ class NodeParameters:
         return [made[name] for name in names]
 
     def declare_parameters_from_overrides(self) -> None:
-        """Declare every override that is not declared yet as a parameter, with the type of its value."""
+        """Declare a parameter for every override that is not declared yet, with the override's type."""
         for name, value in self.__parameters.overrides.items():
             if name not in self.__parameters:
                 self.__parameters.declare(name, value, ParameterDescriptor(), ignore_override=True)
 
-    # These are rclpy's names; programs read them, although they start with an underscore.
+    # Programs read these attributes of rclpy, although their names start with an underscore.
 
     @property
     def _pre_set_parameters_callbacks(self) -> list[PreSetParameters]:
@@ -140,7 +140,7 @@ class NodeParameters:
         return name in self.__parameters
 
     def undeclared_overrides(self) -> list[str]:
-        """Return the names of the overrides that no declaration has used, in order."""
+        """Return the names of the overrides that no declared parameter has used, in order."""
         return [name for name in self.__parameters.overrides if name not in self.__parameters]
 
     def parameter_names(self) -> list[str]:
@@ -150,7 +150,7 @@ class NodeParameters:
     def get_parameter(self, name: str) -> Parameter:
         """Return a declared parameter.
 
-        If undeclared parameters are allowed, the result for any other name is a parameter without a value.
+        If undeclared parameters are allowed, a name that is not declared results in a parameter without a value.
 
         Raises:
             ParameterNotDeclaredException: the parameter is not declared.
@@ -164,14 +164,17 @@ class NodeParameters:
         return [self.__parameters.get(name) for name in names]
 
     def get_parameter_or(self, name: str, alternative_value: Parameter | None = None) -> Parameter:
-        """Return a parameter if it has a value, else the alternative, else a parameter without a value."""
+        """Return a parameter if it has a value, otherwise the alternative.
+
+        Without an alternative, the result is a parameter without a value.
+        """
         found = self.__parameters.value_or_none(name)
         if found is not None:
             return found
         return Parameter(name) if alternative_value is None else alternative_value
 
     def get_parameters_by_prefix(self, prefix: str) -> dict[str, Parameter]:
-        """Return the parameters ``prefix.rest`` by ``rest``; all parameters for an empty prefix."""
+        """Return the parameters ``prefix.rest``, with ``rest`` as the key; all for an empty prefix."""
         return self.__parameters.with_prefix(prefix)
 
     def get_parameter_type(self, name: str) -> int:
@@ -188,17 +191,17 @@ class NodeParameters:
         return [self.get_parameter_type(name) for name in names]
 
     def set_parameters(self, parameter_list: Sequence[Parameter]) -> list[Any]:
-        """Set parameters one by one, and return a result for each, with the reason if it was not set.
+        """Set parameters one by one, and return an rcl_interfaces/msg/SetParametersResult for each.
 
-        A parameter that is set to no value is undeclared if its descriptor allows dynamic typing.
+        If a parameter is set to no value and its descriptor allows dynamic typing, the parameter is undeclared.
 
         Raises:
-            ParameterNotDeclaredException: a parameter is not declared; those before it stay set.
+            ParameterNotDeclaredException: a parameter is not declared. Those before it stay set.
         """
         return [self.set_parameters_atomically([parameter]) for parameter in parameter_list]
 
     def set_parameters_atomically(self, parameter_list: Sequence[Parameter]) -> Any:
-        """Set either all of the parameters or none.
+        """Set either all parameters or none; return an rcl_interfaces/msg/SetParametersResult.
 
         Raises:
             ParameterNotDeclaredException: a parameter is not declared; none is set.
@@ -215,7 +218,7 @@ class NodeParameters:
             depth: the number of levels below a prefix to list; 0 for all levels.
 
         Raises:
-            TypeError: an argument has another type.
+            TypeError: an argument is not of the declared type.
             ValueError: the depth is negative.
         """
         if not isinstance(prefixes, list):
@@ -257,7 +260,7 @@ class NodeParameters:
         """Replace the descriptor of a parameter.
 
         Args:
-            name: the parameter.
+            name: the parameter's name.
             descriptor: the new descriptor.
             alternative_value: an rcl_interfaces/msg/ParameterValue to set if the current value does not satisfy the
                 descriptor.
@@ -276,14 +279,14 @@ class NodeParameters:
     def add_pre_set_parameters_callback(self, callback: PreSetParameters) -> None:
         """Register a callback that may change the list of parameters to be set.
 
-        The last one added is called first.
+        Callbacks are called in the reverse order of their registration.
         """
         self.__parameters.pre_set.insert(0, callback)
 
     def add_on_set_parameters_callback(self, callback: OnSetParameters) -> None:
         """Register a callback that is called before parameters are declared or set.
 
-        It may refuse the change with a reason.
+        The callback may refuse the change with a reason.
         """
         self.__parameters.on_set.insert(0, callback)
 
@@ -292,7 +295,7 @@ class NodeParameters:
         self.__parameters.post_set.insert(0, callback)
 
     def remove_pre_set_parameters_callback(self, callback: PreSetParameters) -> None:
-        """Unregister a callback.
+        """Unregister a callback that may change the list of parameters to be set.
 
         Raises:
             ValueError: the callback is not registered.
@@ -300,7 +303,7 @@ class NodeParameters:
         self.__parameters.pre_set.remove(callback)
 
     def remove_on_set_parameters_callback(self, callback: OnSetParameters) -> None:
-        """Unregister a callback.
+        """Unregister a callback that is called before parameters are declared or set.
 
         Raises:
             ValueError: the callback is not registered.
@@ -308,7 +311,7 @@ class NodeParameters:
         self.__parameters.on_set.remove(callback)
 
     def remove_post_set_parameters_callback(self, callback: PostSetParameters) -> None:
-        """Unregister a callback.
+        """Unregister a callback that is called after parameters were declared or set.
 
         Raises:
             ValueError: the callback is not registered.
@@ -317,7 +320,7 @@ class NodeParameters:
 
 
 def _plain(value: Any) -> Any:
-    """Convert a default that is given as rcl_interfaces/msg/ParameterValue to a Python value."""
+    """Return a default, converted to a Python value if it is an rcl_interfaces ParameterValue."""
     if getattr(value, "TYPE_NAME", None) == "rcl_interfaces/msg/ParameterValue":
         return parameter_value_to_python(value)
     return value
@@ -364,8 +367,8 @@ EVENTS_TOPIC = "/parameter_events"
 class ParameterServices:
     """A node's six parameter services: ``~/describe_parameters`` and so on.
 
-    Their types are created with the first request. Responses are those of rclpy: if one of several requested names is
-    not declared, the response is empty.
+    The service types are created with the first request. Responses are those of rclpy: if one of several requested
+    names is not declared, the response is empty.
 
     Args:
         node: the node whose parameters the services access.
@@ -440,7 +443,7 @@ class ParameterEvents:
         self._node_name = node_name
 
     def publish(self, change: ParameterChange) -> None:
-        """Publish a change if a subscription matches; the topic keeps no messages for late joiners."""
+        """Publish a change if a subscription matches; late joiners never receive earlier changes."""
         if not self._publisher.get_subscription_count():
             return
         event: Any = self._publisher.msg_type()

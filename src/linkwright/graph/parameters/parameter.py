@@ -1,4 +1,4 @@
-"""The types, values and exceptions of ``rclpy.parameter``, and parameter values by node name."""
+"""The types, values and exceptions of ``rclpy.parameter``; parameter values by node name."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ class ParameterRules:
     """Parameter values by node name pattern.
 
     A pattern is a node's full name, in which ``*`` matches one part and ``**`` any number of parts. As in rcl, patterns
-    are ordered by their first appearance, and if two patterns match a node, the later one wins.
+    are ordered by their first appearance. If two patterns match a node, the later one wins.
 
     Attributes:
-        files: the paths of the files that they were read from.
-        left_out: patterns, each with a finding about a parameter whose value no parameter can have.
+        files: the paths of the parameter files from which the values were read.
+        left_out: patterns, each with a finding about a parameter that was left out because its value is not allowed.
     """
 
     def __init__(self) -> None:
@@ -36,22 +36,22 @@ class ParameterRules:
         return bool(self._values)
 
     def __iter__(self) -> Iterator[tuple[str, Mapping[str, Any]]]:
-        """Iterate over the patterns with their values by parameter name."""
+        """Iterate over the patterns, each with its values by parameter name."""
         return iter(self._values.items())
 
     def set(self, pattern: str, name: str, value: Any) -> None:
-        """Set the value of a parameter for a pattern, replacing an earlier value for the same pattern."""
+        """Set a parameter's value for a pattern, replacing an earlier value for the same pattern."""
         self.section(pattern)[name] = value
 
     def section(self, pattern: str) -> dict[str, Any]:
-        """Return the values of a pattern, as a dictionary to which values may be added.
+        """Return the values for a pattern, as a dictionary to which values may be added.
 
-        A missing leading slash is added.
+        If the pattern has no leading slash, one is added.
         """
         return self._values.setdefault(pattern if pattern.startswith("/") else f"/{pattern}", {})
 
     def add(self, other: ParameterRules) -> None:
-        """Append other rules after these."""
+        """Add the values of other rules, which override earlier values for the same pattern."""
         for pattern, values in other:
             self.section(pattern).update(values)
         self.files += other.files
@@ -90,7 +90,7 @@ class ParameterRules:
 
 @lru_cache(maxsize=256)
 def _expression(pattern: str) -> re.Pattern[str]:
-    while "/**/**" in pattern:  # equivalent to a single ``/**``, but many of them take forever to match
+    while "/**/**" in pattern:  # Equivalent to a single ``/**``, but many of them take very long to match.
         pattern = pattern.replace("/**/**", "/**")
     escaped = re.escape(pattern).replace(r"/\*\*", r"(/\w+)*").replace(r"/\*", r"(/\w+)")
     return re.compile(escaped)
@@ -102,8 +102,8 @@ class ParameterException(LinkwrightError):  # noqa: N818  # rclpy's name, which 
     Args:
         error_msg: the mistake.
         parameters: the name or names of the parameters concerned.
-        code: the diagnostic's code.
-        hint: how to fix it.
+        code: the code of the finding.
+        hint: how to fix the mistake.
     """
 
     def __init__(
@@ -143,10 +143,10 @@ class InvalidParameterException(ParameterException):
 
 
 class InvalidParameterTypeException(ParameterException):
-    """Raised when a parameter is set to a value of another type than it was declared with.
+    """Raised when a parameter is set to a value of another type than the declared one.
 
     Args:
-        desired_parameter: the parameter with the value.
+        desired_parameter: the parameter with the refused value.
         expected_type: the name of the declared type.
     """
 
@@ -189,14 +189,14 @@ class InvalidParameterValueException(ParameterException):
 
 
 class ParameterImmutableException(ParameterException):
-    """Raised when a read-only parameter would be changed."""
+    """Raised when a call would change a read-only parameter."""
 
     def __init__(self, parameter_name: str) -> None:
         super().__init__(phrase("Attempted to modify read-only parameter"), parameter_name, code="GRAPH206")
 
 
 class ParameterUninitializedException(ParameterException):
-    """Raised when a parameter is read that was declared with a type and has no value yet."""
+    """Raised when a parameter that was declared with a type only is read before it has a value."""
 
     def __init__(self, parameter_name: str) -> None:
         super().__init__(
@@ -233,7 +233,7 @@ class ParameterType(Enum):
         """Return the type of a Python value; an empty list counts as a byte array, as in rclpy.
 
         Raises:
-            TypeError: a parameter cannot have that value.
+            TypeError: the value is not a valid parameter value.
         """
         if parameter_value is None:
             return cls.NOT_SET
@@ -258,7 +258,7 @@ class ParameterType(Enum):
         )
 
     def check(self, parameter_value: Any) -> bool:
-        """Return whether a parameter of this type can have a value.
+        """Return whether a value is valid for a parameter of this type.
 
         Every array type accepts an empty list.
         """
@@ -278,7 +278,7 @@ class ParameterType(Enum):
         return self.value >= ParameterType.BYTE_ARRAY.value
 
     def __str__(self) -> str:
-        # The text of rclpy's nested class, which appears in the reasons of refusals.
+        # This text of rclpy's nested class appears in the reasons of refusals.
         return f"Type.{self.name}"
 
 
@@ -315,17 +315,17 @@ class Parameter:
 
     Args:
         name: the parameter's name; dots separate levels.
-        type_: its type; by default derived from the value.
+        type_: the parameter's type; by default derived from the value.
         value: bool, int, float, str, bytes, a list of one of these, or None for a parameter that is not set.
 
     Raises:
-        TypeError: a parameter cannot have that value.
+        TypeError: the value is not a valid parameter value.
         ValueError: type and value do not match.
     """
 
     Type = ParameterType
 
-    __class_getitem__: Any = classmethod(GenericAlias)  # annotations name the type of the value, as in rclpy
+    __class_getitem__: Any = classmethod(GenericAlias)  # As in rclpy, annotations may name the type of the value.
 
     __slots__ = ("_name", "_type_", "_value")
 
@@ -397,7 +397,7 @@ def parameter_value_to_python(parameter_value: Any) -> Any:
     """Return the Python value of an rcl_interfaces/msg/ParameterValue; None if it is not set.
 
     Raises:
-        RuntimeError: its ``type`` is not known (rclpy).
+        RuntimeError: the ``type`` of the message is not known (as in rclpy).
     """
     try:
         type_ = ParameterType(parameter_value.type)
@@ -411,7 +411,10 @@ def parameter_value_to_python(parameter_value: Any) -> Any:
 
 @dataclass(slots=True)
 class Range:
-    """The range of a numeric parameter: from `from_value` to `to_value`, in steps unless `step` is 0."""
+    """The range of a numeric parameter: from `from_value` to `to_value`, both inclusive.
+
+    Unless `step` is 0, values are spaced by `step`, starting from `from_value`.
+    """
 
     from_value: float
     to_value: float
@@ -425,13 +428,13 @@ class ParameterDescriptor:
     An rcl_interfaces/msg/ParameterDescriptor may be used instead.
 
     Attributes:
-        name: the parameter's name; filled in when it is declared.
-        type: the number of its type; filled in from the default value, except for an empty list, which does not show
-            it.
+        name: the parameter's name; filled in when the parameter is declared.
+        type: the number of the parameter's type; filled in from the default value, except for an empty list, whose type
+            cannot be determined.
         description: what the parameter is for.
-        additional_constraints: further constraints on its values, in plain words.
-        read_only: whether it keeps the value that it was declared with.
-        dynamic_typing: whether values of any type may be set, and setting no value undeclares it.
+        additional_constraints: further constraints on the values, in plain words.
+        read_only: whether the parameter keeps the value that it was declared with.
+        dynamic_typing: whether values of any type may be set, and setting no value undeclares the parameter.
         floating_point_range: at most one `Range`, for DOUBLE.
         integer_range: at most one `Range`, for INTEGER.
     """
@@ -452,7 +455,7 @@ class ParameterDescriptor:
 
 @dataclass(frozen=True, slots=True)
 class SetParametersResult:
-    """The result of setting parameters, with the reason for a refusal.
+    """The result of setting parameters: whether it succeeded, and the reason for a refusal.
 
     An rcl_interfaces/msg/SetParametersResult may be used instead.
     """
@@ -466,9 +469,9 @@ class SetParametersResult:
 
 @cache
 def service_type(service: str) -> str:
-    """Return the type of a parameter service.
+    """Return the type name of a parameter service.
 
-    For ``get_parameters`` this is ``rcl_interfaces/srv/GetParameters``.
+    An example is ``rcl_interfaces/srv/GetParameters`` for ``get_parameters``.
     """
     return "rcl_interfaces/srv/" + "".join(word.capitalize() for word in service.split("_"))
 
@@ -483,7 +486,7 @@ def interface(name: str) -> Any:
 def descriptor_message(descriptor: Any) -> Any:
     """Convert a descriptor to an rcl_interfaces/msg/ParameterDescriptor.
 
-    Such a message is returned unchanged.
+    A descriptor that is already such a message is returned unchanged.
     """
     message_class = interface("ParameterDescriptor")
     if isinstance(descriptor, message_class):
@@ -506,7 +509,7 @@ def descriptor_message(descriptor: Any) -> Any:
 def result_message(verdict: Any) -> Any:
     """Convert a result to an rcl_interfaces/msg/SetParametersResult.
 
-    Such a message is returned unchanged.
+    A result that is already such a message is returned unchanged.
     """
     message_class = interface("SetParametersResult")
     if isinstance(verdict, message_class):

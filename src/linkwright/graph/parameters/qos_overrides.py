@@ -1,4 +1,4 @@
-"""QoS overrides by parameters, as in ``rclpy.qos_overriding_options``.
+"""QoS overrides through parameters, as in ``rclpy.qos_overriding_options``.
 
 An example of such a parameter is ``qos_overrides./topic.publisher.depth``.
 """
@@ -63,7 +63,7 @@ class QoSOverridingOptions:
     def with_default_policies(
         cls, *, callback: Callable[[QoSProfile], Any] | None = None, entity_id: str | None = None
     ) -> QoSOverridingOptions:
-        """Return options that allow overriding history, depth and reliability."""
+        """Return options that allow parameters to override history, depth and reliability."""
         kinds = (QoSPolicyKind.HISTORY, QoSPolicyKind.DEPTH, QoSPolicyKind.RELIABILITY)
         return cls(kinds, callback=callback, entity_id=entity_id)
 
@@ -78,10 +78,10 @@ def override_qos(
     """Declare the QoS parameters of a new endpoint, and return the resulting profile.
 
     Args:
-        node: the node that declares them as read-only.
+        node: the node that declares the parameters, as read-only.
         entity: ``publisher`` or ``subscription``.
-        topic: the absolute name of its topic.
-        qos: the profile that its code specifies.
+        topic: the absolute name of the endpoint's topic.
+        qos: the profile that the source code specifies.
         options: the policies that may be overridden; None for none.
 
     Raises:

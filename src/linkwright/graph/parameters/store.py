@@ -1,4 +1,4 @@
-"""The parameters of one node, which are declared, read and changed by rclpy's rules."""
+"""The parameters of one node, with rclpy's rules for declaring, reading and changing them."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ WRONG_TYPE = "Wrong parameter type"
 
 
 def objection(parameter: Parameter, descriptor: Any, *, declared: bool, check_read_only: bool) -> str | None:
-    """Return the reason why a parameter cannot be set, or None if it can.
+    """Return the reason why a parameter cannot be set, or None if it can be set.
 
     Fills in the descriptor's name, and its type if the parameter has dynamic typing.
 
@@ -40,7 +40,8 @@ def objection(parameter: Parameter, descriptor: Any, *, declared: bool, check_re
         parameter: the name and the new value.
         descriptor: a `ParameterDescriptor`, or the rcl_interfaces message of the same name.
         declared: whether the parameter is declared already.
-        check_read_only: whether to refuse a change of a read-only parameter; False while it is being declared.
+        check_read_only: whether to refuse a change of a read-only parameter; False while the parameter is being
+            declared.
     """
     descriptor.name = parameter.name
     if check_read_only and descriptor.read_only:
@@ -152,7 +153,7 @@ class ParameterStore:
         on_change: receives each successful change, before the callbacks in `post_set`.
 
     Attributes:
-        pre_set, on_set, post_set: the node's callbacks, the last one added first.
+        pre_set, on_set, post_set: the node's callbacks, in the reverse order of their registration.
     """
 
     def __init__(
@@ -181,13 +182,13 @@ class ParameterStore:
     def declare(
         self, name: str, default: Any, descriptor: Any, *, only_name: bool = False, ignore_override: bool = False
     ) -> Parameter:
-        """Declare a parameter with its override, or else the given default.
+        """Declare a parameter with its override, or the given default if there is no override.
 
         See ``Node.declare_parameter``.
         """
         if not name:
             raise InvalidParameterException(name)
-        descriptor = copy.copy(descriptor)  # may be given for several parameters
+        descriptor = copy.copy(descriptor)  # the same object may be passed for several parameters
         if only_name:
             warnings.warn(_ONLY_A_NAME.format(name), stacklevel=4)
             descriptor.dynamic_typing = True
@@ -237,7 +238,7 @@ class ParameterStore:
         raise ParameterNotDeclaredException(name, self._parameters)
 
     def with_prefix(self, prefix: str) -> dict[str, Parameter]:
-        """Return the parameters below a prefix, by the rest of their names.
+        """Return the parameters below a prefix, with the rest of their names as keys.
 
         For an empty prefix the result contains all parameters.
         """
@@ -245,7 +246,13 @@ class ParameterStore:
         return {name[len(start) :]: parameter for name, parameter in self._parameters.items() if name.startswith(start)}
 
     def descriptor(self, name: str) -> Any:
-        """Return the descriptor of a parameter, which is a copy of the declared or replaced one."""
+        """Return the stored descriptor of a parameter.
+
+        If undeclared parameters are allowed, a name that is not declared results in an empty descriptor.
+
+        Raises:
+            ParameterNotDeclaredException: the parameter is not declared.
+        """
         if name in self._descriptors:
             return self._descriptors[name]
         if self.allow_undeclared:
@@ -253,7 +260,7 @@ class ParameterStore:
         raise ParameterNotDeclaredException(name, self._parameters)
 
     def replace_descriptor(self, name: str, descriptor: Any) -> None:
-        """Store a descriptor object in place of another one with the same content."""
+        """Replace a parameter's descriptor by an object with the same content, without any checks."""
         self._descriptors[name] = descriptor
 
     def set_descriptor(self, name: str, descriptor: Any, alternative: Any) -> Parameter | None:
@@ -290,9 +297,9 @@ class ParameterStore:
         return self._set([self._as_declared(parameter) for parameter in chosen])
 
     def _as_declared(self, parameter: Parameter) -> Parameter:
-        """Return a parameter, with its declared array type if its value is an empty list.
+        """Return a parameter; if its value is an empty list, with the declared array type.
 
-        An empty list does not show its type.
+        The element type of an empty list cannot be determined from the value.
         """
         descriptor = self._descriptors.get(parameter.name)
         if descriptor is None or descriptor.dynamic_typing or not _is_empty_list(parameter.value):
@@ -301,7 +308,11 @@ class ParameterStore:
         return Parameter(parameter.name, declared, []) if declared.is_array else parameter
 
     def _determine_type(self, name: str, default: Any, descriptor: Any) -> Any:
-        """Fill in the descriptor's type, and return the default value, or None if only a type is given."""
+        """Set the descriptor's type, and return the default value; None if only a type is given.
+
+        Raises:
+            ValueError: the type is NOT_SET, or conflicts with dynamic typing.
+        """
         if isinstance(default, ParameterType):
             if default is ParameterType.NOT_SET:
                 raise ValueError(f"Cannot declare parameter {{{name}}} as statically typed of type NOT_SET")
@@ -328,8 +339,8 @@ class ParameterStore:
     ) -> Any:
         """Set all parameters or none.
 
-        If `descriptors` is given, the parameters are being declared. Parameters that are set to no value are
-        undeclared, unless `keep_unset` is true.
+        If `descriptors` is given, the parameters are being declared. Unless `keep_unset` is true, parameters that are
+        set to no value are undeclared.
         """
         applied = self._descriptors if descriptors is None else descriptors
         for parameter in parameters:
@@ -380,7 +391,8 @@ def _is_empty_list(value: Any) -> bool:
 def _parameter(name: str, value: Any, descriptor: Any) -> Parameter:
     """Return a parameter to be declared.
 
-    Report a value that no parameter can have as a mistake of the user.
+    Raises:
+        InvalidParameterValueException: the value is not a valid parameter value.
     """
     if isinstance(value, Parameter):
         value = value.value

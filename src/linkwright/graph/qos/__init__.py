@@ -1,1 +1,1 @@
-"""Quality of service (QoS): profiles, their compatibility, and how to fit a topic's publishers."""
+"""Quality of service (QoS): profiles, their compatibility, and the best match for a topic."""

@@ -36,15 +36,15 @@ class QoSCompatibility(IntEnum):
 
 
 def limit_ns(duration: Duration) -> int | None:
-    """Return a deadline, lifespan or lease in nanoseconds; None if it sets no limit."""
+    """Return a deadline, lifespan or lease in nanoseconds; None if it is unlimited."""
     nanoseconds = duration.nanoseconds
     return None if nanoseconds <= 0 or nanoseconds >= BEST_AVAILABLE_DURATION.nanoseconds else nanoseconds
 
 
 def resolved(qos: QoSProfile) -> QoSProfile:
-    """Return a profile in which Cyclone DDS's choices replace the policies left to the middleware.
+    """Return a profile in which policies left to the middleware have Cyclone DDS's values.
 
-    Durations without a limit become infinite.
+    Unspecified durations become infinite.
     """
     return QoSProfile(
         depth=max(qos.depth, 1),
@@ -70,7 +70,7 @@ def _or_infinite(duration: Duration) -> Duration:
 def incompatible_policies(offered: QoSProfile, requested: QoSProfile) -> list[QoSPolicyKind]:
     """Return the policies in which a subscription requests more than a publisher offers.
 
-    The result is empty if they are compatible.
+    The list is empty if the profiles are compatible.
 
     A reliable subscription needs a reliable publisher, a transient local subscription needs a transient local
     publisher, a subscription with a deadline needs a publisher that offers at most that deadline, and so on.
@@ -99,9 +99,9 @@ def _is_stricter(requested: Duration, offered: Duration) -> bool:
 
 
 def best_available(qos: QoSProfile, others: Iterable[QoSProfile], *, publisher: bool) -> QoSProfile:
-    """Return a profile whose BEST_AVAILABLE values are resolved (rmw_dds_common).
+    """Return a profile whose BEST_AVAILABLE values are resolved, as by rmw_dds_common.
 
-    They are resolved to match the endpoints that are known now.
+    The chosen values match the endpoints that are known now.
 
     Args:
         qos: the profile; returned unchanged if it has no BEST_AVAILABLE value.
@@ -158,7 +158,7 @@ def _leaves_a_choice(qos: QoSProfile) -> bool:
 def qos_check_compatible(publisher_qos: QoSProfile, subscription_qos: QoSProfile) -> tuple[QoSCompatibility, str]:
     """Return whether two profiles are compatible, and the reasons if they are not.
 
-    If a profile leaves a policy to the middleware, the result may be a warning. The reasons are those of rmw's
+    If a profile leaves a policy to the middleware, the first value may be a warning. The reasons are those of rmw's
     ``rmw_qos_profile_check_compatible``.
     """
     errors = "".join(f"ERROR: {reason};" for reason in _errors(publisher_qos, subscription_qos))
@@ -232,8 +232,8 @@ class FittedProfile:
 
     Attributes:
         profile: the profile to subscribe with.
-        mixed: the policies in which the publishers differ, so that the weaker value was chosen: ``(offered by some,
-            chosen)``, with the names of rclpy's enumerations.
+        mixed: the policies in which the publishers differ, so that the weaker value was chosen. Each is a tuple of the
+            value offered by some publishers and the chosen value, with the names of rclpy's enumerations.
     """
 
     profile: QoSProfile
@@ -244,7 +244,7 @@ def fit(wanted: QoSProfile, offers: Sequence[QoSProfile]) -> FittedProfile:
     """Return a profile with the strongest reliability and durability that all publishers offer.
 
     Args:
-        wanted: the rest of the profile, and the complete profile if there are no publishers.
+        wanted: provides the other policies; if there are no publishers, this profile is returned.
         offers: the profiles that the publishers of the topic offer.
     """
     chosen = copy(wanted)

@@ -27,7 +27,7 @@ class QoSPolicyKind(IntEnum):
 
 
 def qos_policy_name_from_kind(policy_kind: QoSPolicyKind | int) -> str:
-    """Return the name of a policy."""
+    """Return the name of a policy in events, given by its kind or number."""
     return QoSPolicyKind(policy_kind).name
 
 
@@ -43,12 +43,12 @@ class QoSPolicyEnum(IntEnum):
 
     @classmethod
     def short_keys(cls) -> list[str]:
-        """Return the names of the values as used on command lines."""
+        """Return the names of the values, as used on command lines."""
         return [name.lower() for name in cls.__members__]
 
     @classmethod
     def get_from_short_key(cls, name: str) -> int:
-        """Return the number of the value with a name, in upper or lower case.
+        """Return the number of the value with a name, regardless of case.
 
         Raises:
             KeyError: there is no value with this name.
@@ -57,7 +57,7 @@ class QoSPolicyEnum(IntEnum):
 
     @property
     def short_key(self) -> str:
-        """The name as used on command lines."""
+        """The value's name, as used on command lines."""
         return self.name.lower()
 
     def __str__(self) -> str:
@@ -65,7 +65,7 @@ class QoSPolicyEnum(IntEnum):
 
 
 class HistoryPolicy(QoSPolicyEnum):
-    """Whether only the last `depth` messages are kept, or all of them."""
+    """Whether only the last `depth` messages are stored, or all of them."""
 
     SYSTEM_DEFAULT = 0
     KEEP_LAST = 1
@@ -84,7 +84,7 @@ class ReliabilityPolicy(QoSPolicyEnum):
 
 
 class DurabilityPolicy(QoSPolicyEnum):
-    """Whether subscriptions that join late get earlier messages."""
+    """Whether subscriptions that join late receive earlier messages."""
 
     SYSTEM_DEFAULT = 0
     TRANSIENT_LOCAL = 1
@@ -116,8 +116,8 @@ class QoSProfile:
     """The policies of a publisher, subscription, service or client (rclpy ``QoSProfile``).
 
     Args:
-        depth: how many messages may wait for a callback, and how many a transient local publisher keeps for late
-            joiners. It has no effect with KEEP_ALL.
+        depth: the maximum number of messages that are queued for a callback, and that a transient local publisher
+            stores for late joiners. It has no effect with KEEP_ALL.
         reliability: RELIABLE or BEST_EFFORT.
         durability: TRANSIENT_LOCAL or VOLATILE.
         history: KEEP_LAST or KEEP_ALL.
@@ -125,7 +125,7 @@ class QoSProfile:
         deadline: the maximum time between two messages.
         liveliness: how the publisher asserts that it is alive.
         liveliness_lease_duration: how long the publisher counts as alive after its last assertion.
-        avoid_ros_namespace_conventions: whether the topic is named on the wire without ROS's prefix.
+        avoid_ros_namespace_conventions: whether the topic's name on the wire has no ROS prefix.
 
     Raises:
         InvalidQoSProfileError: neither history nor depth is given, or KEEP_LAST is given without depth.
@@ -174,7 +174,7 @@ class QoSProfile:
 
     @classmethod
     def of(cls, qos: QoSProfile | int) -> QoSProfile:
-        """Return a profile unchanged, or for a number the default profile with that depth, as in rclpy.
+        """Return a profile unchanged; for a number, as in rclpy, a default profile of that depth.
 
         Raises:
             ValueError: the number is negative.
@@ -196,7 +196,7 @@ class QoSProfile:
 
     @property
     def history(self) -> HistoryPolicy:
-        """Whether only the last messages are kept, or all of them."""
+        """Whether only the last `depth` messages are stored, or all of them."""
         return self._history
 
     @history.setter
@@ -205,7 +205,7 @@ class QoSProfile:
 
     @property
     def depth(self) -> int:
-        """How many messages are kept with KEEP_LAST."""
+        """The maximum number of messages that are stored with KEEP_LAST."""
         return self._depth
 
     @depth.setter
@@ -232,7 +232,7 @@ class QoSProfile:
 
     @property
     def durability(self) -> DurabilityPolicy:
-        """Whether late joiners get earlier messages."""
+        """Whether late joiners receive earlier messages."""
         return self._durability
 
     @durability.setter
@@ -280,7 +280,7 @@ class QoSProfile:
 
     @property
     def avoid_ros_namespace_conventions(self) -> bool:
-        """Whether the topic is named on the wire without ROS's prefix."""
+        """Whether the topic's name on the wire has no ROS prefix."""
         return self._avoid_ros_namespace_conventions
 
     @avoid_ros_namespace_conventions.setter
@@ -400,12 +400,12 @@ class QoSPresetProfiles(Enum):
 
     @classmethod
     def short_keys(cls) -> list[str]:
-        """Return the names of the profiles as used on command lines."""
+        """Return the names of the profiles, as used on command lines."""
         return [name.lower() for name in cls.__members__]
 
     @classmethod
     def get_from_short_key(cls, name: str) -> QoSProfile:
-        """Return the profile with a name, in upper or lower case.
+        """Return the profile with a name, regardless of case.
 
         Raises:
             KeyError: there is no profile with this name.

@@ -1,1 +1,1 @@
-"""Nodes whose callbacks run between the steps of a simulation or control loop, on its thread."""
+"""Nodes whose callbacks run between steps of a simulation or control loop, in its thread."""

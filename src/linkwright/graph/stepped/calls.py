@@ -1,6 +1,6 @@
-"""Calls from a simulation or control loop to the code of its parts.
+"""Calls from a simulation or control loop to its plugins, sensors and controllers.
 
-An exception ends only the part that raised it.
+An exception ends only the plugin, sensor or controller that raised it.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ class Calls:
     """Calls the functions of a plugin, a sensor or a controller.
 
     Args:
-        failed: called with the exception of a function; it may `close` these calls.
+        failed: called with the exception of a function; may call `close`.
 
     Attributes:
         number: the number of the current call, from 1; 0 between calls. State that may change at any time, such as the
@@ -34,7 +34,7 @@ class Calls:
         self._failed = failed
 
     def call(self, function: Callable[[], object]) -> None:
-        """Call a function; `failed` receives an exception that it raises."""
+        """Call a function, and pass an exception that it raises to `failed`."""
         if self.is_closed:
             return
         outer, self._count = self.number, self._count + 1
@@ -47,14 +47,14 @@ class Calls:
             self.number = outer
 
     def fail(self, error: Exception) -> None:
-        """Report an error that occurred elsewhere; to be called in the simulation's thread."""
+        """Report an error that occurred elsewhere. Must be called in the simulation's thread."""
         if not self.is_closed:
             self._failed(error)
 
     def close(self, function: Callable[[], object], on_error: Failure) -> None:
         """Call a final function, and ignore all further calls.
 
-        `on_error` receives an exception that it raises.
+        If the function raises an exception, `on_error` receives it.
         """
         if self.is_closed:
             return
@@ -66,5 +66,5 @@ class Calls:
 
 
 def logged_calls(logger: Logger, name: str) -> Calls:
-    """Return calls that log exceptions, after which everything continues."""
+    """Return a `Calls` object that logs exceptions and continues."""
     return Calls(partial(log_failure, logger, f"a callback of '{name}'"))

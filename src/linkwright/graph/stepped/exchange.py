@@ -16,7 +16,7 @@ Command = Callable[[], object]
 
 
 class Outlet(Protocol):
-    """A destination of messages: a publisher, or a function that is called on the event loop."""
+    """A destination of messages: a publisher, or an object that passes them to a function."""
 
     def publish(self, message: Any) -> object:
         """Publish a message, or pass it to the function."""
@@ -29,28 +29,28 @@ _BATCHES = 4
 class Exchange:
     """Carries messages out of the simulation's thread, and commands into it.
 
-    Messages are collected and delivered in batches: to the event loop of the graph if the simulation has its own
-    thread, otherwise directly. Commands come from any thread, and the simulation executes them between two chunks of
-    time.
+    Messages are collected and delivered in batches. If the simulation has its own thread, batches are delivered to the
+    event loop of the graph, otherwise directly. Commands may come from any thread. The simulation executes them between
+    two intervals of simulated time.
 
     Attributes:
-        come: set while commands are queued.
+        has_commands: an event that is set while commands are queued.
     """
 
     def __init__(self) -> None:
         self.has_commands = threading.Event()
         self._out: list[tuple[Outlet, Any]] = []
         self._in: deque[Command] = deque()
-        self._free: SimpleQueue[None] = SimpleQueue()  # free slots for batches; a semaphore is much slower
+        self._free: SimpleQueue[None] = SimpleQueue()  # tokens for free batches; faster than a semaphore
         self._make_room()
         self._closed = False
 
     def send(self, publisher: Outlet, message: Any) -> None:
-        """Publish a message with the next batch; it must not change afterwards."""
+        """Add a message to the next batch. The message must not change afterwards."""
         self._out.append((publisher, message))
 
     def deliver(self, dispatcher: LoopDispatcher | None = None) -> None:
-        """Publish the messages that were sent.
+        """Publish the messages that were added with `send`.
 
         Args:
             dispatcher: the dispatcher of the event loop that publishes; None to publish in this call.
@@ -66,12 +66,12 @@ class Exchange:
             dispatcher.call_threadsafe(partial(self._deliver, batch))
 
     def post(self, command: Command) -> None:
-        """Queue a function for the simulation's thread, from any thread."""
+        """Queue a function to be called in the simulation's thread. Callable from any thread."""
         self._in.append(command)
         self.has_commands.set()
 
     def run_commands(self) -> None:
-        """Call the functions that were posted."""
+        """Call the functions that were queued with `post`."""
         if self.has_commands.is_set():
             self.has_commands.clear()
         while self._in:
@@ -99,4 +99,4 @@ def _publish(batch: list[tuple[Outlet, Any]]) -> None:
         try:
             publisher.publish(message)
         except InvalidHandleError:  # noqa: PERF203 - `suppress` for each takes longer than to publish
-            continue  # its model was removed
+            continue  # the publisher's model was removed

@@ -1,4 +1,4 @@
-"""A node whose callbacks run between two steps of a simulation or control loop, on its thread."""
+"""A node whose callbacks run between steps of a simulation or control loop, in its thread."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _WARN_SECONDS = 1.0
 class _Outlet:
     """The publishers of a topic, to which the exchange passes messages.
 
-    An error ends only their plugin.
+    An error ends only the plugin that owns the publishers.
 
     Args:
         output: the topic.
@@ -41,20 +41,20 @@ class _Outlet:
         self._make = make
 
     def publish(self, message: Any) -> None:
-        """Publish a message, or the message created from the values."""
+        """Publish a message; with `make`, the message that it creates from the values in `message`."""
         output, make = self._output, self._make
         try:
             made = message if make is None else make(*message)
             for publisher in output.publishers:
                 publisher.publish(made)
         except InvalidHandleError:
-            raise  # its model was removed
+            raise  # the publisher's model was removed
         except Exception as error:  # noqa: BLE001 - of a message that a plugin made
             output.exchange.post(partial(output.calls.fail, error))
 
 
 class Output:
-    """A topic that a plugin publishes, under one name or two.
+    """A topic that a plugin publishes, under one or two names.
 
     Args:
         exchange: the exchange of the simulation.
@@ -71,9 +71,10 @@ class Output:
 
     @property
     def is_wanted(self) -> bool:
-        """Whether a subscription exists; without one, a plugin need not create a costly message.
+        """Whether a subscription exists. Without one, a plugin need not create a costly message.
 
-        Subscriptions may change at any time, on another thread; within one call of a plugin the value stays the same.
+        Subscriptions may change at any time in another thread, but within one call of a plugin this value stays the
+        same.
         """
         number = self.calls.number
         if not number:
@@ -93,7 +94,7 @@ class Output:
         self.exchange.send(self._outlet, message)
 
     def deferred_publisher(self, make: Callable[..., Any]) -> Callable[..., None]:
-        """Return a function that publishes the message that `call` creates from its arguments.
+        """Return a function that publishes the message that `make` creates from its arguments.
 
         The message is created where it is published, so a simulation with its own thread need not wait for it.
 
@@ -109,7 +110,7 @@ class Output:
 
 
 class SteppedNode:
-    """A node's endpoints and parameters, whose callbacks run between two steps.
+    """The endpoints and parameters of a node whose callbacks run between two steps.
 
     Args:
         node: the node.
@@ -119,7 +120,7 @@ class SteppedNode:
         calls: calls the callbacks; by default errors are logged.
 
     Attributes:
-        calls: calls the callbacks.
+        calls: the object that calls the callbacks.
     """
 
     def __init__(
@@ -145,12 +146,12 @@ class SteppedNode:
 
     @property
     def graph_node(self) -> Node:
-        """The node itself, for features such as actions, whose callbacks run on the event loop."""
+        """The underlying node, for features whose callbacks run on the event loop, such as actions."""
         return self._node
 
     @property
     def exchange(self) -> Exchange:
-        """The queues between the thread of the steps and the event loop."""
+        """The exchange between the thread of the steps and the event loop."""
         return self._exchange
 
     @property
@@ -159,7 +160,7 @@ class SteppedNode:
         return self._node.get_fully_qualified_name()
 
     def publisher(self, msg_type: Any, topic: str, qos: QoSProfile | int = 10) -> Output:
-        """Create a publisher, and return its output.
+        """Create a publisher, and return an `Output` for it.
 
         Args:
             msg_type: the message class, or the name of the type.
@@ -178,23 +179,27 @@ class SteppedNode:
         commander: Commander | None = None,
         rest: Callable[[], object] | None = None,
     ) -> None:
-        """Subscribe to a topic.
+        """Subscribe to a topic, with a callback that runs between two steps.
 
-        The arguments are those of `publisher`. For commands that hold until the next one, ``commander`` is an object
-        returned by the method of that name. If a message contains NaN or an infinite number, which would make the world
-        unstable, ``rest`` is called instead of the callback, and a warning is logged.
+        Args:
+            msg_type: the message class, or the name of the type.
+            topic: relative, absolute or private name.
+            callback: called with each message.
+            qos: the QoS; a number is a depth.
+            commander: for commands that hold until the next one, an object returned by the method `commander`.
+            rest: called instead of the callback, with a warning, if a message contains NaN or an infinite number, which
+                would make the world unstable. None to accept such messages.
         """
         self._subscribe_to(msg_type, [topic], self._received_by(topic, callback, rest, commander), qos, commander)
 
     def commander(self, rest: Callable[[], bool]) -> Commander:
-        """Return an object that withdraws the command of a lost publisher.
+        """Return an object that revokes the last command when its publisher is lost.
 
-        It is for commands that hold until the next one.
-
-        It also warns if several nodes send commands at the same time.
+        Such an object is for commands that hold until the next one. It also warns if several nodes send commands at the
+        same time.
 
         Args:
-            rest: stops the motion of the last command; returns whether there was any, which is logged.
+            rest: stops the motion of the last command; returns whether there was any motion, which is logged.
         """
 
         def lost(publisher: EndpointInfo) -> None:
@@ -205,7 +210,10 @@ class SteppedNode:
     def service(self, srv_type: str, name: str, callback: Callable[[Any, Any], Any]) -> None:
         """Offer a service.
 
-        Its callback receives the request and an empty response, and returns the response.
+        Args:
+            srv_type: the name of the type.
+            name: relative, absolute or private name.
+            callback: called with the request and an empty response between two steps; returns the response.
         """
         response = get_service(srv_type).Response
 
@@ -215,11 +223,16 @@ class SteppedNode:
         self._endpoints.append(self._node.create_service(srv_type, name, asked, replying=True))
 
     def post(self, command: Callable[[], object]) -> None:
-        """Queue a function to be called between two steps; callable from any thread."""
+        """Queue a function to be called between two steps. Callable from any thread."""
         self._exchange.post(partial(self.calls.call, command))
 
     def parameter(self, name: str, default: Any) -> Any:
-        """Return the value of a parameter of the node, after declaring it with a default if necessary."""
+        """Return the value of a parameter of the node, which is declared if necessary.
+
+        Args:
+            name: the parameter's name.
+            default: the default with which it is declared.
+        """
         if not self._node.has_parameter(name):
             self._node.declare_parameter(name, default)
         return self._node.get_parameter(name).value
@@ -246,7 +259,7 @@ class SteppedNode:
         rest: Callable[[], object] | None,
         commander: Commander | None,
     ) -> Callable[..., object]:
-        """Return the callback of a subscription, which passes messages to the callback between the steps."""
+        """Return a subscription callback that passes each message to `callback` between steps."""
         if rest is not None:
             callback = partial(self._pass_if_finite, callback, rest, topic)
         received: Callable[..., object] = partial(self._received, callback)
@@ -273,11 +286,17 @@ class SteppedNode:
             self._listen(self._node.handle.resolve_topic_name(name), listen)
 
     def _listen(self, topic: str, listen: Callable[[str], Endpoint]) -> None:
-        """Subscribe to a topic, given by its full name."""
+        """Call `listen`, which subscribes to the topic with the given name."""
         listen(topic)
 
     def _profile(self, topic: str, side: str, qos: QoSProfile | int) -> QoSProfile:
-        """Return the QoS profile of a topic, for a ``publisher`` or a ``subscriber``."""
+        """Return the QoS profile of a topic's endpoint.
+
+        Args:
+            topic: the topic's name.
+            side: ``publisher`` or ``subscriber``.
+            qos: a profile, or a depth.
+        """
         return QoSProfile.of(qos)
 
     def _rest(self, rest: Callable[[], bool], publisher: EndpointInfo) -> None:
@@ -287,9 +306,9 @@ class SteppedNode:
     def _pass_if_finite(
         self, callback: Callable[[Any], object], rest: Callable[[], object], topic: str, message: Any
     ) -> None:
-        """Pass a command on if all its numbers are finite.
+        """Call `callback` with a command if all its numbers are finite.
 
-        Otherwise stop the motion and log a warning.
+        Otherwise call `rest` and log a warning.
         """
         if _is_finite(message):
             callback(message)

@@ -29,7 +29,7 @@ _SHORT_NS = 20_000_000
 
 
 class Alarm(Protocol):
-    """A call that is scheduled for a certain time."""
+    """A call that is scheduled for a time."""
 
     def cancel(self) -> None:
         """Cancel the call."""
@@ -39,10 +39,10 @@ class AlarmSetter(Protocol):
     """Schedules calls."""
 
     def call_at(self, steady_ns: int, callback: Callable[[], None]) -> Alarm:
-        """Schedule a call for a steady time of the graph, in nanoseconds; callable from any thread.
+        """Schedule a call for a steady time of the graph, in nanoseconds. Callable from any thread.
 
-        The call is never made before this method returns. The callback marks entities as ready: it is short, and never
-        a user's code.
+        The callback never runs before this method returns. It must be short, as it only marks entities as ready, and is
+        never a user's code.
         """
 
 
@@ -54,7 +54,7 @@ class Settling(Protocol):
 
 
 class Timebase(ABC):
-    """The two times of a graph: system time and steady time.
+    """The two clocks of a graph: system time and steady time.
 
     System time stamps messages and may jump; timers use steady time.
     """
@@ -71,7 +71,7 @@ class Timebase(ABC):
     def call_at(self, loop: AbstractEventLoop, steady_ns: int, callback: Callable[[], None]) -> Alarm:
         """Schedule a call on an event loop for a steady time, in nanoseconds.
 
-        It must be called in the loop's thread.
+        This method must be called in the loop's thread.
         """
 
     def now(self) -> Time:
@@ -83,13 +83,13 @@ class Timebase(ABC):
 
 
 class SystemClock(Timebase):
-    """The computer's clocks: system time, and the monotonic time that event loops use, too."""
+    """The computer's clocks: system time, and the monotonic time that event loops use as well."""
 
     now_ns = staticmethod(time.time_ns)
     steady_ns = staticmethod(time.monotonic_ns)
 
     def call_at(self, loop: AbstractEventLoop, steady_ns: int, callback: Callable[[], None]) -> Alarm:
-        """Schedule a callback on an event loop."""
+        """Schedule a callback on an event loop, with microsecond precision where possible."""
         if steady_ns - time.monotonic_ns() <= _SHORT_NS:
             alarms = fine_alarms(loop)
             if alarms is not None:
@@ -98,7 +98,7 @@ class SystemClock(Timebase):
 
 
 class JumpClock(Timebase):
-    """A clock that moves only when a test advances it, so that an hour of timers takes milliseconds.
+    """A clock that only a test advances, so that an hour of timers takes milliseconds.
 
     Args:
         start_ns: the initial value of `now_ns`, in nanoseconds since the epoch.
@@ -126,17 +126,17 @@ class JumpClock(Timebase):
         return alarm
 
     def attach(self, dispatcher: Settling) -> None:
-        """Let a dispatcher finish its work before each step of the clock."""
+        """Add a dispatcher, which finishes its work before each step of the clock."""
         self._dispatchers.append(dispatcher)
 
     async def advance(self, seconds: float, *, is_settled: bool = False) -> None:
-        """Advance the time.
+        """Advance both system time and steady time.
 
-        Each timer is called when it becomes due, and its effects are completed before the next one.
+        Each timer is called when it becomes due, and all resulting work is completed before the next one.
 
         Args:
             seconds: how far to advance, in seconds.
-            is_settled: whether all ready work is done already, so that there is nothing to wait for.
+            is_settled: whether all ready work is already done, so that there is nothing to wait for at the start.
         """
         end = self._steady_ns + round(seconds * NANOSECONDS_PER_SECOND)
         if not is_settled:
@@ -150,11 +150,12 @@ class JumpClock(Timebase):
         self._move_to(end)
 
     def jump(self, seconds: float) -> None:
-        """Move the time of stamps forward or back.
+        """Move system time forward or back, as when the system clock is corrected.
 
-        This is what happens when the system clock is corrected or a recording restarts.
+        Steady time does not change, and no timers are called.
 
-        Timers are not called.
+        Args:
+            seconds: how far to move, in seconds; negative to move back.
         """
         self._now_ns += round(seconds * NANOSECONDS_PER_SECOND)
 
@@ -182,7 +183,7 @@ class ClockChange(IntEnum):
 
 
 class JumpThreshold:
-    """The time jumps of a clock that a callback is called for (rclpy ``JumpThreshold``).
+    """The time jumps of a clock for which a callback is called (rclpy ``JumpThreshold``).
 
     Args:
         min_forward: the minimum jump forward, more than zero; None to ignore jumps forward.
@@ -223,10 +224,7 @@ class TimeJump:
 
 
 class JumpHandle:
-    """The handle of callbacks for the time jumps of a clock.
-
-    `Clock.create_jump_callback` creates it.
-    """
+    """The handle of callbacks for the time jumps of a clock; see `Clock.create_jump_callback`."""
 
     def __init__(
         self,
@@ -248,7 +246,7 @@ class JumpHandle:
         self._clock: Clock | None = clock
 
     def unregister(self) -> None:
-        """Unregister the callbacks."""
+        """Unregister the callbacks of this handle."""
         if self._clock is not None:
             self._clock.forget_jump_callback(self)
             self._clock = None
@@ -308,7 +306,7 @@ class Clock:
     ) -> JumpHandle:
         """Register callbacks that are called before and after time jumps of this clock.
 
-        Only ROS time jumps.
+        Only clocks of type ROS_TIME have time jumps.
 
         Raises:
             ValueError: neither callback is given, or one is not callable.
@@ -334,7 +332,7 @@ class Clock:
         return self.timebase.steady_ns()
 
     def call_at(self, dispatcher: AlarmSetter, timer_ns: int, callback: Callable[[], None]) -> Alarm:
-        """Schedule a call for a value of `timer_ns`; the callback must be short."""
+        """Schedule a call for a value of `timer_ns`. The callback must be short."""
         return dispatcher.call_at(timer_ns, callback)
 
     def add_timer(self, timer: FollowsClock) -> None:
@@ -350,7 +348,7 @@ class Clock:
 
         Args:
             until: the point in time, of this clock's type.
-            context: an object with ``ok()``; the sleep ends early when that is no longer true. None for the clock's own
+            context: an object with ``ok()``; the sleep ends early when this returns False. None for the clock's own
                 context.
 
         Returns:
@@ -398,7 +396,7 @@ class Clock:
 
 
 class FollowsClock(Protocol):
-    """The interface of a timer that its clock needs."""
+    """The part of a timer that its clock needs."""
 
     def before_switch(self) -> None:
         """Prepare for a switch of the clock to simulated time or back."""
@@ -422,11 +420,11 @@ class _SimulatedAlarm:
 
 
 class ROSClock(Clock):
-    """ROS time, which is the system's time until a simulation takes over (rclpy ``ROSClock``).
+    """ROS time: system time until simulated time is activated (rclpy ``ROSClock``).
 
     While simulated time is active (`ros_time_is_active`), only `set_ros_time_override` moves the clock, forward or
-    back. Timers keep the rest of their period when the clock switches to simulated time or back, and restart their
-    period when it jumps back (rcl ``rcl_timer``).
+    back. When the clock switches to simulated time or back, timers keep the remaining time to their next call. When
+    simulated time jumps back, they restart their period (rcl ``rcl_timer``).
     """
 
     def __init__(self, *, clock_type: ClockType = ClockType.ROS_TIME, timebase: Timebase | None = None) -> None:
@@ -446,17 +444,17 @@ class ROSClock(Clock):
     def now_ns(self) -> int:
         """Return the current time, in nanoseconds since the epoch.
 
-        The result is 0 while simulated time has not begun.
+        While simulated time is active but has not been set, the result is 0.
         """
         return self._override_ns if self._active else self.timebase.now_ns()
 
     def timer_ns(self) -> int:
-        """Return simulated time while it is active, else steady time, in nanoseconds."""
+        """Return simulated time while it is active, otherwise steady time, in nanoseconds."""
         return self._override_ns if self._active else self.timebase.steady_ns()
 
     def call_at(self, dispatcher: AlarmSetter, timer_ns: int, callback: Callable[[], None]) -> Alarm:
-        """Schedule a call for a value of `timer_ns`."""
-        with self._lock:  # the lock itself is faster than the condition, and timers come here often
+        """Schedule a call for a value of `timer_ns`; simulated time triggers it while active."""
+        with self._lock:  # Faster than locking the condition; timers often call this.
             if not self._active:
                 return dispatcher.call_at(timer_ns, callback)
             alarm = _SimulatedAlarm(timer_ns, next(self._numbers), callback)
@@ -466,7 +464,7 @@ class ROSClock(Clock):
         return dispatcher.call_at(self.timebase.steady_ns(), callback)
 
     def add_timer(self, timer: FollowsClock) -> None:
-        """Register a timer that is notified of switches, and of jumps back."""
+        """Register a timer that is notified when the clock switches its time source or jumps back."""
         self._timers[timer] = None
 
     def remove_timer(self, timer: FollowsClock) -> None:
@@ -514,7 +512,7 @@ class ROSClock(Clock):
                 return
             if self._jump_handles or now_ns < self._override_ns:
                 self._jump_to(now_ns)
-            else:  # the usual case
+            else:  # usual case
                 self._override_ns = now_ns
             self._changed.notify_all()
             due = []
@@ -525,9 +523,9 @@ class ROSClock(Clock):
                 alarm.callback()
 
     def _jump_to(self, now_ns: int) -> None:
-        """Set simulated time, and call the jump callbacks whose threshold it exceeds.
+        """Set simulated time, and call the jump callbacks whose threshold the jump exceeds.
 
-        Timers are notified if the time jumps back.
+        If the time jumps back, timers are notified, too.
         """
         jump = TimeJump(ClockChange.ROS_TIME_NO_CHANGE, Duration(nanoseconds=now_ns - self._override_ns))
         handles = [handle for handle in self._jump_handles if handle.threshold.is_exceeded(jump)]
@@ -540,7 +538,7 @@ class ROSClock(Clock):
         self._notify_after(handles, jump)
 
     def interrupt(self) -> None:
-        """Wake sleeping threads to check their contexts."""
+        """Wake sleeping threads, which check their contexts."""
         with self._changed:
             self._changed.notify_all()
 

@@ -1,8 +1,8 @@
-"""Alarms of an event loop with microsecond precision, for loops that wait for whole milliseconds.
+"""Alarms with microsecond precision, for event loops that wait for whole milliseconds.
 
 On Linux, asyncio waits with ``epoll_wait``, whose timeout is counted in milliseconds and rounded up: each tick at 1 kHz
 would be late, and every seventh would be missed. A kernel timer that the loop watches as a file (``timerfd``) wakes it
-in time. The event loops of other systems do not need one.
+in time. The event loops of other systems do not need such a timer.
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ _ABSOLUTE = 1
 
 
 def fine_alarms(loop: AbstractEventLoop) -> FineAlarms | None:
-    """Return the fine alarms of an event loop; None if the loop's own alarms must suffice.
+    """Return the fine alarms of an event loop; None if only the loop's own alarms are available.
 
-    It must be called in the loop's thread.
+    This function must be called in the loop's thread.
     """
     try:
-        return _of_loops[id(loop)]  # a weak dictionary runs Python code, and timers come here with each tick
+        return _of_loops[id(loop)]  # A weak dictionary is slower, and timers call this with each tick.
     except KeyError:
         found = _of_loops[id(loop)] = _made(loop)
         weakref.finalize(loop, _of_loops.pop, id(loop), None)
@@ -44,15 +44,15 @@ def fine_alarms(loop: AbstractEventLoop) -> FineAlarms | None:
 def _made(loop: AbstractEventLoop) -> FineAlarms | None:
     if sys.platform != "linux":
         return None
-    import ctypes  # imported here: most programs do not need it, and it takes longer than the rest
+    import ctypes  # imported here: few programs need it, and it is slow to import
 
-    if ctypes.sizeof(ctypes.c_long) != 8:  # times have another layout there
+    if ctypes.sizeof(ctypes.c_long) != 8:  # The layout below requires 64-bit fields.
         return None
-    libc = ctypes.PyDLL(None)  # its calls are short, so the interpreter's lock is not released
+    libc = ctypes.PyDLL(None)  # PyDLL keeps the interpreter lock, since the calls are short
     file = libc.timerfd_create(_CLOCK_MONOTONIC, os.O_NONBLOCK | os.O_CLOEXEC)
     if file < 0:
         return None
-    period_and_next = (ctypes.c_long * 4)()  # both in seconds and nanoseconds
+    period_and_next = (ctypes.c_long * 4)()  # each has seconds and nanoseconds
     alarms = FineAlarms(partial(libc.timerfd_settime, file, _ABSOLUTE, period_and_next, None), period_and_next)
     try:
         loop.add_reader(file, alarms.run)
@@ -65,11 +65,11 @@ def _made(loop: AbstractEventLoop) -> FineAlarms | None:
 
 @dataclass(slots=True, order=True)
 class ScheduledAlarm:
-    """A scheduled call; alarms are ordered by their times.
+    """A scheduled call. Alarms are ordered by their times.
 
     Attributes:
-        steady_ns: when the call is due.
-        number: decides the order of alarms that are due at the same time; the lowest number comes first.
+        steady_ns: when the call is due, in nanoseconds.
+        number: the order of alarms that are due at the same time; the lowest number comes first.
         callback: the callback.
         cancelled: whether the call is cancelled.
     """
@@ -87,13 +87,13 @@ class ScheduledAlarm:
 class FineAlarms:
     """The calls that are scheduled on an event loop, in the order in which they are due.
 
-    The timer is set again each time it expires. This also makes its file unreadable again, so the file need not be
-    read.
+    Each time the kernel timer expires, it is set again. This also makes its file unreadable again, so the file need not
+    be read.
 
     Args:
         set_timer: passes the setting to the kernel.
-        setting: the timer's setting in monotonic time: the seconds and nanoseconds of its period, which is 0 for none,
-            and of its next expiry.
+        setting: the timer's setting in monotonic time: seconds and nanoseconds of its period (0 for no period), then
+            seconds and nanoseconds of its next expiry.
     """
 
     def __init__(self, set_timer: Callable[[], int], setting: Array[c_long]) -> None:
@@ -106,7 +106,7 @@ class FineAlarms:
     def call_at(self, steady_ns: int, callback: Callable[[], None]) -> ScheduledAlarm:
         """Schedule a call for a value of ``time.monotonic_ns``.
 
-        It is never made before this method returns.
+        The callback never runs before this method returns.
         """
         alarm = ScheduledAlarm(steady_ns, next(self._numbers), callback)
         heapq.heappush(self._alarms, alarm)
@@ -117,7 +117,7 @@ class FineAlarms:
     def run(self) -> None:
         """Make the calls that are due.
 
-        Calls that they schedule are made in a later iteration of the loop.
+        Calls that the callbacks schedule are made in a later iteration of the loop.
         """
         alarms, due = self._alarms, []
         now_ns = time.monotonic_ns()
@@ -137,7 +137,7 @@ class FineAlarms:
 
     def _set(self) -> None:
         setting = self._setting
-        # A time of 0 stops the timer, which is right if there are no alarms; with a time in the past it expires
+        # A time of 0 stops the timer, as required if there are no alarms. With a time in the past, the timer expires
         # immediately.
         setting[2], setting[3] = divmod(self._alarms[0].steady_ns, NANOSECONDS_PER_SECOND) if self._alarms else (0, 0)
         self._set_timer()

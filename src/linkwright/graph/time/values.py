@@ -28,8 +28,8 @@ class Duration:
     """A duration in nanoseconds, as a 64-bit integer (rclpy ``Duration``).
 
     Args:
-        seconds: seconds, which may have a fraction.
-        nanoseconds: nanoseconds to add; a fraction is dropped.
+        seconds: the seconds, which may have a fraction.
+        nanoseconds: the nanoseconds to add; a fraction is dropped.
 
     Raises:
         OverflowError: the duration does not fit into 64 bits.
@@ -89,7 +89,7 @@ class Duration:
         raise ValueError("Can't multiply duration with nan")
 
     def to_msg(self) -> messages.Duration:
-        """Convert the duration to a message."""
+        """Convert the duration to a builtin_interfaces/msg/Duration."""
         from linkwright import messages
 
         seconds, nanoseconds = divmod(self.nanoseconds, NANOSECONDS_PER_SECOND)
@@ -97,7 +97,7 @@ class Duration:
 
     @classmethod
     def from_msg(cls, msg: messages.Duration) -> Duration:
-        """Convert a message to a duration.
+        """Convert a builtin_interfaces/msg/Duration to a duration.
 
         Raises:
             TypeError: `msg` is not a ``builtin_interfaces/msg/Duration``.
@@ -112,13 +112,13 @@ INFINITE = Duration(nanoseconds=_LIMIT - 1)
 
 
 class Time:
-    """A point in time of one type of clock, in nanoseconds since the clock's epoch (rclpy ``Time``).
+    """A point in time of one type of clock, in nanoseconds since its epoch (rclpy ``Time``).
 
     Points in time of different types of clocks cannot be compared or subtracted.
 
     Args:
-        seconds: seconds since the epoch, which may have a fraction.
-        nanoseconds: nanoseconds to add; a fraction is dropped.
+        seconds: the seconds since the epoch, which may have a fraction.
+        nanoseconds: the nanoseconds to add; a fraction is dropped.
         clock_type: the type of clock.
 
     Raises:
@@ -198,17 +198,17 @@ class Time:
         return self.nanoseconds >= other._of_same(self) if isinstance(other, Time) else NotImplemented
 
     def to_msg(self) -> messages.Time:
-        """Convert the point in time to a message."""
+        """Convert the point in time to a builtin_interfaces/msg/Time."""
         from linkwright import messages
 
         seconds, nanoseconds = divmod(self.nanoseconds, NANOSECONDS_PER_SECOND)
         return messages.Time(sec=seconds, nanosec=nanoseconds)
 
     def to_datetime(self) -> datetime:
-        """Convert the point in time to a local date and time.
+        """Convert the point in time to a date and time in the local time zone.
 
         Raises:
-            TypeError: the clock has no calendar.
+            TypeError: the clock type has no calendar date.
         """
         if self.clock_type not in (ClockType.ROS_TIME, ClockType.SYSTEM_TIME):
             raise TypeError("Time object's clock type should be either ROS_TIME or SYSTEM_TIME")
@@ -216,7 +216,7 @@ class Time:
 
     @classmethod
     def from_msg(cls, msg: Any, clock_type: ClockType = ClockType.ROS_TIME) -> Time:
-        """Convert a message to a point in time.
+        """Convert a builtin_interfaces/msg/Time to a point in time.
 
         Raises:
             TypeError: `msg` is not a ``builtin_interfaces/msg/Time``.
@@ -232,11 +232,9 @@ class Time:
 
 
 def _differs(kind: str, other: object) -> bool:
-    """Return NotImplemented for a comparison with an object of another type.
+    """Return NotImplemented for a comparison with an object of another type; raise before Iron.
 
-    Raise an error in Humble.
-
-    The error finds mistakes such as ``duration == 5``.
+    The error reveals mistakes such as ``duration == 5``.
 
     Raises:
         TypeError: ``ROS_DISTRO`` is Humble or an earlier distribution.

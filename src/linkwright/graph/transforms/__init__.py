@@ -1,1 +1,1 @@
-"""tf2: transforms over time, with broadcasters, listeners and buffers."""
+"""Transforms over time, as in tf2, with broadcasters, listeners and buffers."""

@@ -28,7 +28,7 @@ class TransformBroadcaster:
 class StaticTransformBroadcaster:
     """Publishes transforms that do not change.
 
-    Each message contains all transforms sent so far, for late joiners.
+    Each message contains all transforms that were sent so far, so that late joiners receive all of them.
 
     Args:
         node: the node that publishes.
@@ -40,9 +40,9 @@ class StaticTransformBroadcaster:
         self._sent: dict[str, TransformStamped] = {}
 
     def sendTransform(self, transform: TransformStamped | Sequence[TransformStamped]) -> None:  # noqa: N802
-        """Publish transforms.
+        """Publish one transform, or several, together with those sent earlier.
 
-        Each replaces the transform that was sent before for the same child frame.
+        A transform replaces an earlier transform with the same child frame.
         """
         for transform_stamped in _listed(transform):
             self._sent[transform_stamped.child_frame_id] = transform_stamped

@@ -1,8 +1,8 @@
-"""A tf buffer without history, which keeps only the latest transform of each frame.
+"""A tf buffer without history, which stores only the latest transform of each frame.
 
 A robot may be a chain of hundreds of links, so composing poses level by level would take hundreds of small steps.
-Instead, each round composes the pose of every frame with the pose of the frame that it is expressed in so far. This
-doubles the distance covered: a chain of 500 links takes nine rounds, a typical robot three or four.
+Instead, each round composes the pose of every frame with the pose of its current reference frame. This doubles the
+number of levels covered: a chain of 500 links takes nine rounds, a typical robot three or four.
 """
 
 from __future__ import annotations
@@ -26,10 +26,11 @@ class FrameTree:
     """The tree of n frames, prepared so that `poses_in_roots` needs few array operations.
 
     Args:
-        parents: array, shape (n,), of each frame's parent; -1 for frames without a parent.
+        parents: array, shape (n,), of the index of each frame's parent; -1 for frames without a parent.
 
     Attributes:
-        roots: array, shape (n,), of the root of each frame's tree; -1 for frames whose parents form a loop.
+        roots: array, shape (n,), of the index of the root of each frame's tree; -1 for frames whose parents form a
+            loop.
     """
 
     def __init__(self, parents: Rows) -> None:
@@ -43,18 +44,19 @@ class FrameTree:
         self.roots: Rows = np.where(ends, above, -1)
         self._is_root = parents < 0
         self._rounds: list[tuple[Rows, Rows]] = []
-        # The pose of a frame whose parent is a root is final from the start.
+        # If a frame's parent is a root, the frame's pose is final from the start.
         reference = np.where(ends & ~self._is_root & ~self._is_root[parents], parents, -1)
         while (active := np.flatnonzero(reference >= 0)).size:
             self._rounds.append((active, reference[active]))
             reference[active] = reference[reference[active]]
 
     def poses_in_roots(self, local: Poses) -> Poses:
-        """Return the poses of all frames in the roots of their trees, shape (n, 7).
+        """Return the pose of each frame in the root of its tree, shape (n, 7).
 
-        They are computed from `local`, the poses of all frames in their parents.
+        The rows of roots are the identity. The rows of frames in a loop are meaningless.
 
-        The rows of roots are the identity; the rows of frames in a loop are meaningless.
+        Args:
+            local: array, shape (n, 7), of the pose of each frame in its parent.
         """
         poses: Poses = local.copy()
         poses[self._is_root] = IDENTITY
@@ -75,12 +77,12 @@ class FrameSnapshot:
     """The poses of all frames at one moment, in a fixed frame.
 
     Attributes:
-        revision: changes whenever `names` or `parents` do, and only then.
+        revision: a number that changes if and only if `names` or `parents` change.
         names: the names of the n frames.
         parents: for each frame the index of its parent, -1 for frames without a parent.
-        poses: array, shape (n, 7), of x y z (metres) and qx qy qz qw: each frame in the fixed frame. The rows of frames
-            that no transforms connect with it are NaN.
-        ages: array, shape (n,), of the seconds since each frame's transform was last received; 0 for static ones.
+        poses: array, shape (n, 7), of each frame's pose in the fixed frame: x y z (metres) and qx qy qz qw. The rows of
+            frames that no transforms connect with the fixed frame are NaN.
+        ages: array, shape (n,), of the seconds since each frame's transform was last received; 0 for static transforms.
     """
 
     revision: int
@@ -92,7 +94,7 @@ class FrameSnapshot:
 
 @dataclass(slots=True)
 class _Plan:
-    """The rows that the transforms of a list of frames are stored in.
+    """The rows in which the transforms of a list of frames are stored.
 
     `revision` is the revision at which the parents were last checked.
     """
@@ -104,13 +106,14 @@ class _Plan:
 
 
 class TransformBuffer:
-    """Keeps the latest transform of each frame, as a display needs it.
+    """Stores the latest transform of each frame, as a display needs it.
 
-    As in tf2 a frame has one parent, and the transform received last applies, regardless of its sender. A transform
-    with another parent therefore moves the frame there. Unlike tf2 there is no history: stamps are ignored.
+    As in tf2, a frame has one parent, and the transform that was received last applies, regardless of its sender. A
+    transform with another parent therefore moves the frame to that parent. Unlike tf2 there is no history: stamps are
+    ignored.
 
     Args:
-        on_problem: called once, with tf2's words, for each kind of bad transform of each frame.
+        on_problem: called once, with tf2's wording, for each kind of invalid transform of each frame.
     """
 
     def __init__(self, on_problem: Callable[[str], object] | None = None) -> None:
@@ -173,9 +176,10 @@ class TransformBuffer:
     def lookup(self, target: str, source: str) -> Poses:
         """Return the pose of the source frame in the target frame.
 
-        The pose is an array, shape (7,), of x y z and qx qy qz qw.
+        As in tf2's ``lookupTransform``, the pose transforms points from the source frame to the target frame.
 
-        The pose transforms points from the source frame to the target frame, as tf2's ``lookupTransform`` does.
+        Returns:
+            Array, shape (7,), of x y z and qx qy qz qw.
 
         Raises:
             LookupException: one of the frames is not known, or its parents form a loop.
@@ -193,7 +197,7 @@ class TransformBuffer:
         return compose(invert(poses[target_row]), poses[source_row])
 
     def knows(self, frame: str) -> bool:
-        """Return whether a frame with this name exists."""
+        """Return whether a frame exists."""
         return frame in self._rows
 
     def frames(self) -> tuple[str, ...]:
@@ -203,14 +207,14 @@ class TransformBuffer:
     def remove(self, names: Iterable[str]) -> None:
         """Remove the transforms of some frames, such as those of a robot that was replaced.
 
-        A frame that is the parent of others stays, without a parent; the other frames disappear.
+        A frame that is the parent of others stays, but without a parent of its own.
         """
         for row in (self._rows[name] for name in names if name in self._rows):
             self._parents[row] = -1
         in_use = self._parents >= 0
         in_use[self._parents[in_use]] = True
         kept = np.flatnonzero(in_use)
-        moved = np.full(len(in_use) + 1, -1, dtype=np.intp)  # one element more, so that parent -1 stays -1
+        moved = np.full(len(in_use) + 1, -1, dtype=np.intp)  # one more element, so that index -1 gives -1
         moved[kept] = np.arange(kept.size)
         self._rows = {name: int(moved[row]) for name, row in self._rows.items() if in_use[row]}
         self._parents = moved[self._parents[kept]]
@@ -220,7 +224,7 @@ class TransformBuffer:
         self._structure_changed()
 
     def clear(self) -> None:
-        """Remove all transforms except the static ones, as when time restarts."""
+        """Remove all transforms except the static ones, for example when time restarts."""
         moving = (self._parents >= 0) & ~self._static
         self.remove([name for name, row in self._rows.items() if moving[row]])
 

@@ -1,4 +1,4 @@
-"""The history of a frame in the tf buffer: its recent transforms, or a static transform."""
+"""The stored transforms of one frame in the tf buffer: a history, or a static transform."""
 
 from __future__ import annotations
 
@@ -20,14 +20,20 @@ _COMPACT_FROM = 256
 
 
 class Sample(NamedTuple):
-    """A transform of a frame: the number of its parent, and a row in an array or a pose itself."""
+    """A transform of a frame: the number of its parent, and its pose.
+
+    Attributes:
+        parent: the number of the parent frame.
+        poses: an array of poses, or the pose itself.
+        row: the row of the pose in the array; -1 if `poses` is the pose itself.
+    """
 
     parent: int
     poses: NDArray | Transform  # type: ignore[type-arg]  # rows of floats
     row: int = -1
 
     def pose(self) -> Transform:
-        """Return the pose in the parent frame."""
+        """Return the pose of the frame in its parent."""
         if self.row < 0:
             return cast("Transform", self.poses)
         return cast("Transform", tuple(cast("NDArray", self.poses)[self.row].tolist()))  # type: ignore[type-arg]  # rows of floats
@@ -36,12 +42,12 @@ class Sample(NamedTuple):
 class NoDataError(Exception):
     """Raised when there is no transform for a time.
 
-    The text names the times that exist, in tf2's words; it is empty if there are none.
+    The message names the available times, in tf2's wording; it is empty if there are none.
     """
 
 
 def format_time(stamp_ns: int) -> str:
-    """Format a time as tf2 does: in seconds with six decimal places."""
+    """Format a time, given in nanoseconds, as tf2 does: in seconds with six decimal places."""
     return f"{stamp_ns / NANOSECONDS_PER_SECOND:.6f}"
 
 
@@ -50,11 +56,14 @@ class FrameCache(ABC):
 
     @abstractmethod
     def add(self, stamp_ns: int, sample: Sample) -> bool:
-        """Store a transform; return False if it is too old."""
+        """Store a transform; return False if it is too old to be stored."""
 
     @abstractmethod
     def at(self, time_ns: int) -> tuple[int, Transform]:
-        """Return the number of the parent and the pose at a time; 0 for the latest.
+        """Return the number of the parent and the pose at a time.
+
+        Args:
+            time_ns: the time in nanoseconds; 0 for the latest transform.
 
         Raises:
             NoDataError: there is no transform for that time.
@@ -62,7 +71,10 @@ class FrameCache(ABC):
 
     @abstractmethod
     def parent_at(self, time_ns: int) -> int:
-        """Return the number of the parent at a time; 0 for the latest.
+        """Return the number of the parent at a time.
+
+        Args:
+            time_ns: the time in nanoseconds; 0 for the latest transform.
 
         Raises:
             NoDataError: there is no transform for that time.
@@ -72,14 +84,14 @@ class FrameCache(ABC):
     def latest(self) -> tuple[int, int] | None:
         """Return the stamp of the latest transform (0 if static) and the number of its parent.
 
-        The result is None if there is none.
+        Returns None if there is no transform.
         """
 
     @abstractmethod
     def oldest_ns(self) -> int:
         """Return the stamp of the oldest transform, in nanoseconds.
 
-        The result is 0 if there is none, or if it is static.
+        Returns 0 if the transform is static, or if there is none.
         """
 
     @abstractmethod
@@ -118,7 +130,7 @@ class StaticCache(FrameCache):
         return None if self._sample is None else (0, self._sample.parent)
 
     def oldest_ns(self) -> int:
-        """Return 0."""
+        """Return 0: a static transform has no stamp."""
         return 0
 
     def __len__(self) -> int:
@@ -132,7 +144,7 @@ class MovingCache(FrameCache):
     """The transforms of a frame over time.
 
     Args:
-        span_ns: how long transforms are kept, counted back from the latest one, in nanoseconds.
+        span_ns: how long transforms are stored, counted back from the stamp of the latest one, in nanoseconds.
     """
 
     __slots__ = ("_first", "_samples", "_span_ns", "_stamps")
@@ -144,7 +156,10 @@ class MovingCache(FrameCache):
         self._first = 0
 
     def add(self, stamp_ns: int, sample: Sample) -> bool:
-        """Insert a transform by its stamp, unless it is stored already; return False if it is too old."""
+        """Insert a transform by its stamp; return False if it is too old.
+
+        A transform that equals a stored one with the same stamp is not stored again.
+        """
         stamps = self._stamps
         if len(stamps) == self._first:
             stamps.append(stamp_ns)
@@ -195,7 +210,7 @@ class MovingCache(FrameCache):
         return self._stamps[-1], self._samples[-1].parent
 
     def oldest_ns(self) -> int:
-        """Return the stamp of the oldest transform."""
+        """Return the stamp of the oldest transform, in nanoseconds; 0 if there is none."""
         return self._stamps[self._first] if len(self) else 0
 
     def __len__(self) -> int:
@@ -206,7 +221,11 @@ class MovingCache(FrameCache):
         self._stamps, self._samples, self._first = [], [], 0
 
     def _index_at(self, time_ns: int) -> int:
-        """Return the index of the last transform at or before a time."""
+        """Return the index of the last transform at or before a time; of the latest one for 0.
+
+        Raises:
+            NoDataError: the time is outside the stored range.
+        """
         stamps: Sequence[int] = self._stamps
         if len(stamps) == self._first:
             raise NoDataError

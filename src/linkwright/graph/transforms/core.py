@@ -1,7 +1,7 @@
-"""The tf buffer with history: transforms of the last seconds, and lookups at any time among them.
+"""The tf buffer with history, which allows lookups at any time in the last seconds.
 
-The methods are those of ``tf2_py.BufferCore``; behaviour and messages are those of tf2. `TransformBuffer` is for
-displays, which need the current poses of all frames.
+The methods are those of ``tf2_py.BufferCore``. Behaviour and messages are those of tf2. Displays, which need the
+current poses of all frames, use `TransformBuffer` instead.
 """
 
 from __future__ import annotations
@@ -46,12 +46,12 @@ _NOT_DEFINED = "Source or target frame is not yet defined"
 
 
 class BufferCore:
-    """Keeps transforms for a limited time. It may be used from several threads.
+    """Stores transforms for a limited time. Any thread may use the buffer.
 
     Times are ``Time`` objects or messages of builtin_interfaces; zero requests the latest transform.
 
     Args:
-        cache_time: how long transforms are kept, counted back from the latest one of each frame.
+        cache_time: how long transforms are stored, counted back from the latest one of each frame.
         logger: reports refused transforms; a logger named ``tf2`` by default.
     """
 
@@ -69,11 +69,11 @@ class BufferCore:
     def set_transform(self, transform: Any, authority: str) -> None:
         """Store a geometry_msgs/msg/TransformStamped.
 
-        A transform that tf2 would refuse is dropped, and the reason logged.
+        A transform that tf2 would refuse is dropped, and the reason is logged.
 
         Args:
             transform: the message.
-            authority: the sender, for reports.
+            authority: the name of the sender, for reports.
         """
         self._set_message(transform, authority, static=False)
 
@@ -86,9 +86,9 @@ class BufferCore:
 
         Args:
             message: the transforms.
-            static: whether they were received on ``/tf_static``.
+            static: whether the message was received on ``/tf_static``.
             now_ns: not used here; `TransformBuffer` needs the current time.
-            authority: the sender, for reports.
+            authority: the name of the sender, for reports.
         """
         columns = message.columns()
         if columns is None:
@@ -115,7 +115,7 @@ class BufferCore:
         Args:
             target_frame: the frame to transform to.
             source_frame: the frame to transform from.
-            time: the time; zero for the latest time that all frames between the two have in common.
+            time: the time; zero for the latest time for which all frames between the two have transforms.
 
         Raises:
             LookupException: a frame is not known.
@@ -131,7 +131,7 @@ class BufferCore:
     ) -> Any:
         """Return the pose of the source frame at one time in the target frame at another time.
 
-        The fixed frame is assumed not to move between the two times.
+        The result is a TransformStamped message. The fixed frame is assumed not to move between the two times.
 
         Raises:
             TransformException: as for `lookup_transform_core`.
@@ -160,7 +160,7 @@ class BufferCore:
             return way.pose(), way.time_ns
 
     def can_transform_core(self, target_frame: str, source_frame: str, time: Any) -> tuple[bool, str]:
-        """Return whether a lookup would succeed, and the reason if not, in tf2's words."""
+        """Return whether a lookup would succeed, and the reason if not, with tf2's wording."""
         if target_frame == source_frame:
             return True, ""
         with self._lock:
@@ -184,9 +184,9 @@ class BufferCore:
             return self._can(fixed_frame, source_frame, nanoseconds_of(source_time)) if verdict[0] else verdict
 
     def get_latest_common_time(self, target_frame: str, source_frame: str) -> Time:
-        """Return the latest time that all moving frames between two frames have in common.
+        """Return the latest time for which all moving frames between two frames have transforms.
 
-        The result is zero if none of them moves.
+        The result is zero if all frames between them are static.
 
         Raises:
             LookupException: a frame is not known.
@@ -238,7 +238,7 @@ class BufferCore:
     def all_frames_as_yaml(self, time: Any = None) -> str:
         """Return all frames with their parents, rates and times, as YAML.
 
-        The text includes delays if a time is given.
+        If `time` is given, the text includes the delay of each frame at that time.
         """
         with self._lock:
             return frames_as_yaml(self._facts(), nanoseconds_of(time) if time is not None else 0)
@@ -256,7 +256,7 @@ class BufferCore:
     def chain(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
     ) -> list[str]:
-        """Return the frames between two frames, from the source through the fixed frame to the target.
+        """Return the names of the frames from the source through the fixed frame to the target.
 
         Raises:
             TransformException: as for `lookup_transform_core`.
@@ -273,11 +273,11 @@ class BufferCore:
         return kept
 
     def all_frames_as_dot(self, time: Any = None) -> str:
-        """Return all frames as a Graphviz graph; with ages if a time is given."""
+        """Return all frames as a Graphviz graph. If `time` is given, the graph includes ages."""
         with self._lock:
             return frames_as_dot(self._facts(), nanoseconds_of(time) if time is not None else 0)
 
-    # tf2_py's names for these methods.
+    # tf2_py's names of these methods
     _chain = chain
     _getFrameStrings = frame_names  # noqa: N815
     _frameYAML = all_frames_as_yaml  # noqa: N815
@@ -288,7 +288,10 @@ class BufferCore:
     def lookupVelocityCore(  # noqa: N802
         self, tracking_frame: str, observation_frame: str, time: Any, averaging_interval: Any
     ) -> tuple[Vector3, Vector3]:
-        """Return the velocity of the origin of a frame, expressed in the frame that observes it."""
+        """Return the velocity of the origin of a frame, expressed in the frame that observes it.
+
+        See `lookup_velocity`.
+        """
         reference = (observation_frame, (0.0, 0.0, 0.0), tracking_frame)
         return self.lookup_velocity(tracking_frame, observation_frame, *reference, time, averaging_interval)
 
@@ -322,11 +325,10 @@ class BufferCore:
         )
 
     def _plan(self, parents: tuple[str, ...], children: tuple[str, ...], authority: str, static: bool) -> _Plan:
-        """Return the caches for the transforms of a message with these frames.
+        """Return, for each transform, the cache of the child frame and the number of its parent.
 
-        Computed once for all such messages.
-
-        The cache is None for transforms that must be reported in the log.
+        The result is computed once for all messages with these frames. The cache is None for a transform that is
+        refused, which must be logged.
         """
         key = (parents, children, authority, static)
         plan = self._plans.get(key)
@@ -346,7 +348,7 @@ class BufferCore:
         return plan
 
     def _cache(self, number: int, static: bool) -> FrameCache:
-        """Return the cache of a frame; a new cache if the frame changes between static and moving."""
+        """Return the cache of a frame; a new one if the frame changes between static and moving."""
         cache = self._caches[number]
         if cache is None or isinstance(cache, StaticCache) is not static:
             cache = self._caches[number] = StaticCache() if static else MovingCache(self._span_ns)
@@ -426,10 +428,10 @@ def _all_usable(poses: NDArray[np.float64]) -> bool:
 
 
 def nanoseconds_of(time: Any) -> int:
-    """Return the nanoseconds of a ``Time`` or ``Duration``, or of a message of builtin_interfaces.
+    """Return the nanoseconds of a ``Time``, a ``Duration`` or a builtin_interfaces message.
 
     Raises:
-        TypeError: `time` is none of these; the message is tf2's.
+        TypeError: `time` is none of these; the error message is tf2's.
     """
     if hasattr(time, "nanosec"):
         return int(time.sec) * NANOSECONDS_PER_SECOND + int(time.nanosec)
@@ -439,9 +441,9 @@ def nanoseconds_of(time: Any) -> int:
 
 
 def _problem(parent: str, child: str, pose: Transform, authority: str) -> str | None:
-    """Return the reason why a transform is refused, in tf2's words; None if it is accepted."""
+    """Return why a transform is refused, with tf2's wording; None if it is accepted."""
     x, y, z, w = pose[3:]
-    # The comparison fails for NaN and for infinite numbers as well, so this single test covers the usual case.
+    # The comparison is false for NaN and infinite numbers, too, so this single test covers the usual case.
     unit = abs(x * x + y * y + z * z + w * w - 1.0) < _QUATERNION_TOLERANCE
     if unit and parent and child and parent != child and not any(map(isnan, pose[:3])):
         return None

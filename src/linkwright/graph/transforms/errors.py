@@ -1,4 +1,4 @@
-"""The reasons why a transform is not available: tf2's exceptions, with its names and messages."""
+"""tf2's exceptions for transforms that are not available, with tf2's names and messages."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ class TransformException(LinkwrightError):  # noqa: N818  # tf2's name, which us
 
     Args:
         text: the reason.
-        hint: how to fix it.
-        code: the diagnostic's code.
+        hint: how to fix the problem.
+        code: the code of the finding.
     """
 
     def __init__(self, text: str = "", *, hint: Phrase | None = None, code: str = "GRAPH307") -> None:
@@ -49,14 +49,14 @@ class ExtrapolationException(TransformException):
 
 
 class TimeoutException(TransformException):
-    """Raised when a transform did not become available in time."""
+    """Raised when a transform does not become available before the timeout."""
 
     def __init__(self, text: str = "") -> None:
         super().__init__(text, code="GRAPH306")
 
 
 def loop(which: str) -> LookupException:
-    """Return the error for parents that form a loop; `which` names the place."""
+    """Return the error for parents that form a loop, with `which` appended to the message."""
     return LookupException(
         phrase("The tf tree is invalid because it contains a loop.{which}", which=which), code="GRAPH303"
     )
@@ -69,7 +69,12 @@ def unknown_frame(argument: str, frame: str, known: Iterable[str]) -> LookupExce
 
 
 def bad_frame_name(argument: str, frame: str) -> InvalidArgumentException | None:
-    """Return the error for a frame name that is not valid; None if the name is valid."""
+    """Return the error for a frame name that is not valid; None if the name is valid.
+
+    Args:
+        argument: the name of the argument, for the message.
+        frame: the frame name.
+    """
     reason = bad_frame_reason(frame)
     if reason is None:
         return None
@@ -81,7 +86,7 @@ def bad_frame_name(argument: str, frame: str) -> InvalidArgumentException | None
 
 
 def bad_frame_reason(frame: str) -> Phrase | None:
-    """Return the reason why a frame name is not valid; None if it is valid."""
+    """Return the reason why a frame name is not valid; None if the name is valid."""
     if not frame:
         return phrase("in tf2 frame_ids cannot be empty")
     if frame.startswith("/"):

@@ -1,7 +1,7 @@
 """Transformation of geometry_msgs messages between frames, as in ``tf2_geometry_msgs``.
 
-Each function takes a message and a geometry_msgs/msg/TransformStamped, as returned by a lookup, and returns a new
-message with that transform's header. None of the arguments is changed.
+Each function takes a message and a geometry_msgs/msg/TransformStamped from a lookup, and returns a new message. If the
+new message has a header, it is the transform's header. The arguments are not changed.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ def do_transform_point(point: Any, transform: Any) -> Any:
 
 
 def do_transform_vector3(vector3: Any, transform: Any) -> Any:
-    """Return a Vector3Stamped in the target frame, rotated but not translated."""
+    """Return a Vector3Stamped in the target frame. The vector is rotated but not translated."""
     result = _new("Vector3Stamped", transform)
     _set_vector(result.vector, _turned(transform, vector3.vector))
     return result
@@ -63,7 +63,7 @@ def do_transform_pose_stamped(pose: Any, transform: Any) -> Any:
 
 
 def do_transform_pose_with_covariance_stamped(pose: Any, transform: Any) -> Any:
-    """Return a PoseWithCovarianceStamped in the target frame; the covariance is rotated as well."""
+    """Return a PoseWithCovarianceStamped in the target frame; its covariance is rotated, too."""
     result = _new("PoseWithCovarianceStamped", transform)
     result.pose.pose = do_transform_pose(pose.pose.pose, transform)
     result.pose.covariance = transform_covariance(pose.pose.covariance, transform)
@@ -97,8 +97,8 @@ def transform_covariance(cov_in: Any, transform: Any) -> NDArray[np.float64]:
     """Return the covariance of a pose in the target frame.
 
     Args:
-        cov_in: 36 numbers, the rows of the covariance matrix of x y z and the rotations about these axes.
-        transform: the transform; only its rotation is used.
+        cov_in: 36 numbers, the rows of the covariance matrix of x, y, z and the rotations about these axes.
+        transform: the transform, of which only the rotation is used.
 
     Returns:
         Array, shape (36,).

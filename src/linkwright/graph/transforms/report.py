@@ -18,9 +18,9 @@ class FrameFacts:
 
     Attributes:
         name: the name of the frame.
-        parent: the name of its parent.
-        authority: the sender of the transform.
-        count: how many transforms of the frame are stored.
+        parent: the name of the frame's parent.
+        authority: the sender of the latest transform.
+        count: the number of transforms of the frame that are stored.
         latest_ns: the stamp of the latest transform, in nanoseconds; 0 for a static transform.
         oldest_ns: the stamp of the oldest transform, in nanoseconds.
     """
@@ -34,7 +34,7 @@ class FrameFacts:
 
     @property
     def rate(self) -> float:
-        """The number of transforms per second."""
+        """The number of transforms per second, in Hz."""
         span_ns = max(self.latest_ns - self.oldest_ns, _SHORTEST_SPAN_NS)
         return self.count * 1e9 / span_ns
 
@@ -45,12 +45,12 @@ class FrameFacts:
 
 
 def frames_as_text(frames: Sequence[FrameFacts]) -> str:
-    """Return a text with one line for each frame."""
+    """Return a text that names each frame and its parent, one frame per line."""
     return "".join(f"Frame {frame.name} exists with parent {frame.parent}.\n" for frame in frames)
 
 
 def frames_as_yaml(frames: Sequence[FrameFacts], now_ns: int) -> str:
-    """Return the frames as a YAML mapping; with delays unless `now_ns` is 0."""
+    """Return the frames as a YAML mapping; with delays relative to `now_ns` unless it is 0."""
     if not frames:
         return "[]"
     lines = []
@@ -70,10 +70,10 @@ def frames_as_yaml(frames: Sequence[FrameFacts], now_ns: int) -> str:
 
 
 def frames_as_dot(frames: Sequence[FrameFacts], now_ns: int) -> str:
-    """Return the frames as a Graphviz graph."""
+    """Return the frames as a Graphviz graph; with ages relative to `now_ns` unless it is 0."""
     lines = ["digraph G {"]
     if not frames:
-        lines.append('"no tf data recieved"')  # tf2's spelling
+        lines.append('"no tf data recieved"')  # the spelling is tf2's
     for frame in frames:
         age = f"( {(now_ns - frame.latest_ns) / NANOSECONDS_PER_SECOND:.3f} sec old)" if now_ns else ""
         lines.append(

@@ -1,7 +1,7 @@
 """The velocity of a frame, computed with the formulas of tf2's ``lookupVelocity``.
 
-The formulas are identical, so that programs get the same numbers as from tf2, even when the reference frame rotates
-against the others and other formulas would be correct.
+The formulas are tf2's, so that programs receive the same numbers. This holds even when the reference frame rotates
+relative to the others, and other formulas would be correct.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ class PoseSource(Protocol):
     """A source of the poses of frames in other frames."""
 
     def lookup(self, target: str, source: str, time_ns: int) -> tuple[Transform, int]:
-        """Return the pose of the source frame in the target frame, and its time."""
+        """Return the pose of the source frame in the target frame, and its time in nanoseconds."""
 
 
 def velocity(
@@ -46,8 +46,8 @@ def velocity(
         observation_frame: the frame in which the movement is observed.
         reference: the frame in which the velocity is expressed, the point to which it refers, and the frame of that
             point.
-        times_ns: the time, the latest time that both frames have in common, and the interval over which to average, in
-            nanoseconds.
+        times_ns: the time, the latest time for which both frames have transforms, and the interval over which to
+            average, in nanoseconds.
 
     Raises:
         TransformException: there are no poses for these times.

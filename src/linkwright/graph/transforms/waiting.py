@@ -1,4 +1,4 @@
-"""The tf buffer that nodes use, with lookups that wait by blocking or as futures.
+"""The tf buffer that nodes use, whose lookups can wait: by blocking, or as futures.
 
 The methods are those of ``tf2_ros.Buffer``.
 """
@@ -22,12 +22,12 @@ NO_TIME = Duration()
 
 
 class Buffer(BufferCore):
-    """Keeps transforms, and waits for them.
+    """Stores transforms, with lookups that can wait for a transform.
 
     Args:
-        cache_time: how long transforms are kept; 10 seconds by default.
-        node: if given, the node offers the service ``tf2_frames``, which reports all frames; the buffer is cleared when
-            the node's clock jumps back; and the node's logger reports refused transforms.
+        cache_time: how long transforms are stored; 10 seconds by default.
+        node: a node that offers the service ``tf2_frames``, which reports all frames, and whose logger reports refused
+            transforms. When the node's clock jumps back, the buffer is cleared. None for a buffer without a node.
     """
 
     def __init__(self, cache_time: Any = None, node: Any = None) -> None:
@@ -76,13 +76,13 @@ class Buffer(BufferCore):
             timeout: how long to wait for the transform. Another thread must spin the node in the meantime.
 
         Raises:
-            TransformException: the transform is not available in time; the class indicates the reason.
+            TransformException: the transform does not become available in time; the class indicates the reason.
         """
         self.can_transform(target_frame, source_frame, time, timeout)
         return self.lookup_transform_core(target_frame, source_frame, time)
 
     async def lookup_transform_async(self, target_frame: str, source_frame: str, time: Any) -> Any:
-        """Wait in a coroutine until the transform is available, and return it; see `lookup_transform`."""
+        """Wait in a coroutine until a transform is available and return it; see `lookup_transform`."""
         await self.wait_for_transform_async(target_frame, source_frame, time)
         return self.lookup_transform_core(target_frame, source_frame, time)
 
@@ -95,7 +95,7 @@ class Buffer(BufferCore):
         fixed_frame: str,
         timeout: Any = NO_TIME,
     ) -> Any:
-        """Return the pose of the source at one time in the target at another.
+        """Return the pose of the source frame at one time in the target frame at another time.
 
         See `BufferCore.lookup_transform_full_core`.
         """
@@ -120,7 +120,10 @@ class Buffer(BufferCore):
         timeout: Any = NO_TIME,
         return_debug_tuple: bool = False,
     ) -> Any:
-        """Return whether a lookup succeeds within the timeout, or a tuple of that and the reason."""
+        """Return whether a lookup succeeds within the timeout.
+
+        With `return_debug_tuple`, return a tuple of this bool and the reason for a failure.
+        """
         verdict = self._wait(lambda: self.can_transform_core(target_frame, source_frame, time), timeout)
         return verdict if return_debug_tuple else verdict[0]
 
@@ -134,7 +137,7 @@ class Buffer(BufferCore):
         timeout: Any = NO_TIME,
         return_debug_tuple: bool = False,
     ) -> Any:
-        """Return whether a lookup with a fixed frame succeeds within the timeout."""
+        """Return whether a lookup with a fixed frame succeeds in time; see `can_transform`."""
         verdict = self._wait(
             lambda: self.can_transform_full_core(target_frame, target_time, source_frame, source_time, fixed_frame),
             timeout,
@@ -151,7 +154,7 @@ class Buffer(BufferCore):
     def wait_for_transform_full_async(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
     ) -> Future[Any]:
-        """Return a future that gets the transform through a fixed frame as soon as it is available."""
+        """Return a future that gets a transform via a fixed frame as soon as it is available."""
         question = (target_frame, target_time, source_frame, source_time, fixed_frame)
         return self._future(
             lambda: self.can_transform_full_core(*question)[0], lambda: self.lookup_transform_full_core(*question)

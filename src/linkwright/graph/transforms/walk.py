@@ -1,6 +1,6 @@
-"""Paths through the tree of frames at a time, by tf2's rules.
+"""Paths through the tree of frames at a given time, by tf2's rules.
 
-A search climbs from the source, and then from the target until it meets the first path.
+A search climbs from the source to the root, then from the target until it meets the first path.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ class FramePath:
     """A path from a source frame to a target frame.
 
     Attributes:
-        time_ns: the time of the path's transforms.
+        time_ns: the time of the path's transforms, in nanoseconds.
         up: the numbers of the frames from the source upwards, without the top frame.
-        down: the numbers of the frames from the target upwards, without the top frame, in which both meet.
-        top: the number of the top frame.
+        down: the numbers of the frames from the target upwards, without the top frame.
+        top: the number of the top frame, in which both halves meet.
         source_pose: the pose of the source in the top frame.
         target_pose: the pose of the target in the top frame.
     """
@@ -49,7 +49,7 @@ class FramePath:
         """Return the numbers of the frames from the source to the target, including both."""
         up, down = list(self.up), list(self.down)
         top = self.top
-        # Both climbs may have continued beyond the frame in which they meet.
+        # Both halves may have continued beyond the frame in which they meet.
         while up and down and up[-1] == down[-1]:
             top = up.pop()
             down.pop()
@@ -62,7 +62,7 @@ class Walker:
     Args:
         caches: the transforms of each frame, by number; None for frames without a parent. The list may grow.
         names: the names of the frames, by number.
-        shape: returns a text that shows all frames, for messages.
+        shape: returns a text that lists all frames, for error messages.
     """
 
     def __init__(self, caches: list[FrameCache | None], names: list[str], shape: Callable[[], str]) -> None:
@@ -75,8 +75,8 @@ class Walker:
 
         Args:
             target: the number of the target frame.
-            source: the number of the source frame, which must be another frame.
-            time_ns: the time, or 0 for the latest time that all frames on the path have in common.
+            source: the number of the source frame, which must differ from the target.
+            time_ns: the time in nanoseconds, or 0 for the latest time for which all frames on the path have transforms.
             poses: whether to compute the poses.
 
         Raises:
@@ -94,9 +94,9 @@ class Walker:
         return way
 
     def latest_common_time(self, target: int, source: int) -> int:
-        """Return the latest time that all moving frames between two frames have in common.
+        """Return the latest time for which all moving frames between two frames have transforms.
 
-        The result is 0 if none of them moves.
+        The time is in nanoseconds, and 0 if all frames between the two are static.
 
         Raises:
             ConnectivityException: no path connects the two frames.
@@ -132,7 +132,10 @@ class Walker:
         raise self._loop()
 
     def _climb_from_source(self, way: FramePath, source: int, target: int, poses: bool) -> str | None:
-        """Climb to the target or the root; return the reason if missing data ended the climb early."""
+        """Climb from the source to the target or the root, and store this half of the path in `way`.
+
+        Returns the reason if missing data ended the climb early, otherwise None.
+        """
         frame, pose = source, IDENTITY
         trouble = None
         for depth in range(MAX_DEPTH + 2):

@@ -1,4 +1,4 @@
 """The engine that runs a launch description.
 
-It has the session, processes, in-process nodes, signals and live reload.
+The engine consists of the session, processes, in-process nodes, signals and live reload.
 """

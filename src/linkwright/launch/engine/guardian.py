@@ -1,8 +1,8 @@
 """The guardian, which ends the processes of a launcher that was killed.
 
-A launcher that is killed with SIGKILL cannot end its processes. A small helper program is therefore started together
-with the first process. It reads from a pipe that the launcher holds open, knows the process groups, and ends them when
-the pipe closes without notice.
+A launcher that is killed with SIGKILL cannot end its processes. A small helper program, the guardian, is therefore
+started together with the first process. The guardian reads the process groups of the launch from a pipe that the
+launcher holds open. If the pipe closes before the launcher has announced a normal end, the guardian ends the groups.
 """
 
 from __future__ import annotations
@@ -28,7 +28,10 @@ class Guardian:
         self._folder: Path | None = None
 
     def start_and_mark(self, environment: dict[str, str]) -> dict[str, str]:
-        """Start the guardian, and return the environment with the mark by which it finds a process."""
+        """Start the guardian if needed, and return the environment with a mark that identifies the launch.
+
+        The guardian finds the processes of the launch by this mark.
+        """
         self._start()
         return {**environment, _MARK: self._identity}
 

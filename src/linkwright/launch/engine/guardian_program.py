@@ -1,9 +1,9 @@
 """The program of the guardian, which ends the remaining processes of a killed launcher.
 
-It is run by path in a bare interpreter and imports little, so that it adds almost no time to a launch. Its standard
-input is a pipe from the launcher, with one line per event: ``+PID`` when a process group was started, ``-PID`` when the
-group ended, ``=PATH`` when a folder of temporary files was created, and ``.`` when the launch ended normally. If the
-pipe closes without the last line, the launcher was killed.
+The launcher runs this file by its path in a bare interpreter. The file imports little, so that it adds almost no time
+to a launch. Its standard input is a pipe from the launcher, with one line per event: ``+PID`` when a process group was
+started, ``-PID`` when the group ended, ``=PATH`` when a folder of temporary files was created, and ``.`` when the
+launch ended normally. If the pipe closes without the last line, the launcher was killed.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _STAGES = ((signal.SIGINT, 1.0), (signal.SIGTERM, 0.5), (signal.SIGKILL, 0.0))
 
 
 def main(mark: str) -> None:
-    """Wait for the launch to end, and end its remaining processes if the launcher was killed.
+    """Wait for the launcher to end, and end the remaining processes if the launcher was killed.
 
     Args:
         mark: an environment variable ``NAME=VALUE`` that every process of the launch has.
@@ -44,9 +44,10 @@ def main(mark: str) -> None:
 
 
 def marked_groups(mark: bytes) -> set[int]:
-    """Return the process groups that carry the mark.
+    """Return the IDs of the process groups whose environment contains the mark.
 
-    They include groups that were started just before the launcher ended.
+    The result includes groups that were started just before the launcher was killed and were not yet registered. It is
+    empty on systems without ``/proc``.
     """
     try:
         entries = os.listdir("/proc")  # noqa: PTH208 - importing pathlib would take longer than all the rest
@@ -72,7 +73,7 @@ def _group_of(pid: int) -> int:
 
 
 def end_groups(groups: set[int]) -> None:
-    """End process groups, escalating to stronger signals for the groups that remain."""
+    """End process groups with SIGINT, then SIGTERM, then SIGKILL for the groups that remain."""
     for number, seconds in _STAGES:
         groups = {group for group in groups if send_signal(group, number)}
         deadline = time.monotonic() + seconds

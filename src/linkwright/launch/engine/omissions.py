@@ -37,9 +37,12 @@ class Omissions:
         self._unreported: list[Note] = []
 
     def skip(self, error: LinkwrightError) -> bool:
-        """Skip the part that caused an error if missing software allows it.
+        """Skip the part of the launch that raised an error, if missing software is the cause.
 
-        Return whether it was skipped.
+        An error about an unset value is also skipped if an earlier skipped part may have set the value.
+
+        Returns:
+            Whether the part is skipped; False if the error must be reported.
         """
         consequence = self.any and any(diagnostic.code in _CONSEQUENCES for diagnostic in error.diagnostics)
         if not (consequence or is_unavailable(error) or (self._wanted and _is_missing(error))):
@@ -49,7 +52,7 @@ class Omissions:
         return True
 
     def report(self) -> None:
-        """Print the parts skipped since the last call."""
+        """Print a warning that lists the parts skipped since the last call, if there are any."""
         if not self._unreported:
             return
         message = counted(
@@ -65,7 +68,7 @@ class Omissions:
     def with_skip_command(self, error: LinkwrightError) -> tuple[Diagnostic, ...]:
         """Return the findings of a fatal error.
 
-        A note on the command that would skip the missing part is added, if there is such a command.
+        If a command would skip the missing part, the last finding gets a note with this command.
         """
         *others, last = error.diagnostics
         if self._command is None or not _is_missing(error):
@@ -75,9 +78,9 @@ class Omissions:
 
 
 def note_that_nothing_is_left(error: LinkwrightError) -> None:
-    """Add a note to an error that explains why no part of the launch can be skipped.
+    """Add a note that no part of the launch can be skipped to an error in reading the launch file.
 
-    The error occurred in reading the launch file.
+    The note is added only if the error is about missing software and has a location.
     """
     *others, last = error.diagnostics
     if _is_missing(error) and last.span is not None:

@@ -1,6 +1,6 @@
 """The process table of a launch.
 
-It starts, respawns and ends processes, and leaves none running.
+The table starts, respawns and ends processes, and leaves none running.
 """
 
 from __future__ import annotations
@@ -38,11 +38,14 @@ class ProcessTable:
         return bool(self._running)
 
     def start(self, plan: ProcessPlan, name: str) -> None:
-        """Start a process, monitor it until it ends, and respawn it if its plan requests that."""
+        """Start a process, monitor it until it ends, and respawn it if the plan requests a respawn."""
         self._session.spawn(self._follow(plan, name))
 
     def stop_matching(self, matcher: ProcessMatcher) -> None:
-        """Ask the processes whose actions match to end, each within the time in its plan."""
+        """Ask the processes whose actions match to end.
+
+        The delays before SIGTERM and SIGKILL are those in the plan of each process.
+        """
         for process in tuple(self._running):
             if matcher(process.plan.action):
                 self._session.spawn(process.stop())
@@ -54,7 +57,7 @@ class ProcessTable:
                 process.signal(number)
 
     def stop_all(self, *, interrupted: bool) -> None:
-        """Ask all processes to end, and start no more.
+        """Ask all processes to end, and respawn none.
 
         Args:
             interrupted: whether the user interrupted the launch, in which case pending processes are not started.
@@ -65,7 +68,7 @@ class ProcessTable:
             self._session.spawn(process.stop())
 
     def escalate(self) -> None:
-        """Send SIGTERM now to the processes that were asked to end, and SIGKILL soon after."""
+        """Send SIGTERM now to the processes that were asked to end, and SIGKILL half a second later."""
         for process in tuple(self._running):
             process.escalate()
 
@@ -75,14 +78,14 @@ class ProcessTable:
         return sorted(process.name for process in self._running)
 
     def seconds_to_end(self) -> float:
-        """Return the maximum time in seconds that `stop_all` may take."""
+        """Return the maximum time in seconds that running processes may take to end after `stop_all`."""
         plans = [process.plan for process in tuple(self._running)]
         return max((plan.seconds_to_sigterm + plan.seconds_to_sigkill for plan in plans), default=0.0)
 
     def kill_all(self) -> None:
-        """Kill all processes, and the children of ended processes.
+        """Kill all running processes, and the remaining children of ended processes.
 
-        This is safe to call from a signal handler.
+        This method is safe to call from a signal handler.
         """
         for process in (*self._running, *self._left_behind):
             process.signal_group(getattr(signal, "SIGKILL", signal.SIGTERM))

@@ -1,6 +1,6 @@
-"""Processes of a launch.
+"""The processes of a launch.
 
-Each has its own process group, and its output is read line by line.
+Each process has its own process group, and its output is read line by line.
 """
 
 from __future__ import annotations
@@ -43,10 +43,10 @@ class RunningProcess:
     Args:
         plan: the plan of the process to start.
         name: the name of the process in the log, such as ``talker-1``.
-        log: the log that receives its output.
-        emit: the function that receives its events.
-        wants_output: returns whether any handler accepts an output event.
-        guardian: ends the process if the launcher is killed.
+        log: the log that receives the output of the process.
+        emit: the function that receives the events of the process.
+        wants_output: a function that returns whether any handler accepts an output event.
+        guardian: the guardian that ends the process if the launcher is killed.
     """
 
     def __init__(
@@ -110,7 +110,7 @@ class RunningProcess:
     async def stop(self) -> None:
         """Ask the process to end with SIGINT, then SIGTERM, then SIGKILL.
 
-        The waits between them are set in its plan.
+        The plan sets the delays between the signals.
         """
         if self._stopping or self._ended.is_set():
             return
@@ -133,7 +133,7 @@ class RunningProcess:
             self.signal_group(_KILL if following == "SIGKILL" else signal.SIGTERM)
 
     def escalate(self) -> None:
-        """Escalate to the next signal now, because the user does not want to wait."""
+        """Shorten the delays before the next signals, because the user does not want to wait."""
         self._hurried = True
         self._news.set()
 
@@ -146,7 +146,7 @@ class RunningProcess:
         return self._ended.is_set()
 
     def signal(self, number: signal.Signals) -> None:
-        """Send a signal to the process that a launch file requested."""
+        """Log and send a signal that the launch file requested."""
         self._log.info_line(self.name, f"sending signal '{number.name}' to process[{self.name}]")
         self.signal_group(number)
 
@@ -199,7 +199,10 @@ class RunningProcess:
             await loop.connect_read_pipe(partial(_Terminal, self, number), pipe)
 
     def started(self, transport: asyncio.SubprocessTransport) -> None:
-        """Record that the process is running; its output arrives only after this call."""
+        """Record that the process is running.
+
+        asyncio calls this method before it delivers any output.
+        """
         self._transport = transport
         self._guardian.watch(transport.get_pid())
         details = self._details(transport)
@@ -288,7 +291,7 @@ class RunningProcess:
         self._log.process_line(self.name, number, shown, self.plan.destinations[number])
 
     def _report_end(self, pid: int, returncode: int) -> None:
-        as_asked = returncode in (-signal.SIGINT, 128 + signal.SIGINT) or not _HAS_GROUPS  # terminated without a group
+        as_asked = returncode in (-signal.SIGINT, 128 + signal.SIGINT) or not _HAS_GROUPS  # ended by terminate()
         if returncode == 0 or (self._stopping and as_asked):
             self._log.info_line(self.name, f"process has finished cleanly [pid {pid}]")
             return
@@ -299,7 +302,7 @@ class RunningProcess:
 class _Lines:
     """Splits the output of a process into lines.
 
-    Overlong or unterminated lines are shown in parts.
+    An incomplete line that exceeds the maximum length is returned in parts.
     """
 
     def __init__(self) -> None:
@@ -308,7 +311,7 @@ class _Lines:
         self._length = 0
 
     def feed(self, chunk: bytes) -> list[str]:
-        """Add a chunk of bytes, and return the lines that it completes."""
+        """Add a chunk of bytes, and return the lines that it completes, without line ends."""
         first, *others = self._decode(chunk).split("\n")
         self._pieces.append(first)
         self._length += len(first)
@@ -320,13 +323,13 @@ class _Lines:
         return [line.rstrip("\r") for line in complete]
 
     def end(self) -> list[str]:
-        """Return the unterminated last line in a list, which is empty if there is none."""
+        """Return the unterminated last line in a list, or an empty list if there is none."""
         rest = "".join(self._pieces) + self._decode(b"", final=True)
         return [rest.rstrip("\r")] if rest else []
 
 
 class _Streams(asyncio.SubprocessProtocol):
-    """Forwards asyncio's callbacks for a process."""
+    """Forwards asyncio's callbacks for a process to its `RunningProcess`."""
 
     def __init__(self, process: RunningProcess) -> None:
         self._process = process
@@ -363,6 +366,6 @@ def _pseudo_terminals() -> list[tuple[int, int]]:
     """Open pseudo-terminals for stdout and stderr, if the system has them.
 
     Returns:
-        The outer and inner end of each.
+        The file descriptors of the outer and inner end of each pseudo-terminal; an empty list if the system has none.
     """
     return [os.openpty(), os.openpty()] if hasattr(os, "openpty") else []

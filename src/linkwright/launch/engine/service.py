@@ -62,20 +62,26 @@ class LaunchService:
 
     @property
     def event_loop(self) -> asyncio.AbstractEventLoop | None:
-        """The event loop of the launch while it runs."""
+        """The event loop of the launch, or None if the launch is not running."""
         return None if self.__session is None else self.__session.loop
 
     @property
     def task(self) -> asyncio.Task[Any] | None:
-        """The task of the current run, or None."""
+        """The task of the current run, or None if the launch is not running."""
         return self.__task
 
     def include_launch_description(self, launch_description: LaunchDescription) -> None:
-        """Queue a description to be visited; may be called from any thread."""
+        """Queue a description to be visited.
+
+        This method may be called from any thread.
+        """
         self.emit_event(events.IncludeLaunchDescription(launch_description))
 
     def emit_event(self, event: Any) -> None:
-        """Queue an event; may be called from any thread, and before the run."""
+        """Queue an event.
+
+        This method may be called from any thread, and before the run.
+        """
         with self.__lock:
             loop = self.event_loop
             if loop is None or threading.current_thread() is threading.main_thread():
@@ -84,11 +90,13 @@ class LaunchService:
                 loop.call_soon_threadsafe(self.__context.emit_event_sync, event)
 
     def shutdown(self, force_sync: bool = False) -> Coroutine[Any, Any, None] | None:
-        """Shut the launch down; may be called from any thread.
+        """Shut the launch down.
+
+        This method may be called from any thread, and has no effect if the launch is not running.
 
         Returns:
             An awaitable if this is called on the launch's event loop or between two runs of that loop, unless
-            `force_sync` is set.
+            `force_sync` is set; otherwise None.
         """
         if self.__session is None:
             return None
@@ -157,7 +165,7 @@ class LaunchService:
 
 
 def _end_tasks(loop: asyncio.AbstractEventLoop) -> None:
-    """Cancel the remaining tasks of an event loop that stays in use."""
+    """Cancel the remaining tasks of an event loop, unless the loop is still running."""
     if loop.is_running():
         return
     left = asyncio.all_tasks(loop)
@@ -168,15 +176,12 @@ def _end_tasks(loop: asyncio.AbstractEventLoop) -> None:
 
 
 class ProcessLaunchService(LaunchService):
-    """Runs every node as a process, so that tests can observe its output and exit status."""
+    """Runs every node as a process, so that tests can observe the output and exit status of each node."""
 
     _isolates_nodes = True
 
 
 def _starting_folders() -> list[Path]:
-    """Return the folders where the package search starts.
-
-    They are the program's folder and the current folder.
-    """
+    """Return the folders where the package search starts: the program's folder and the current folder."""
     program = Path(sys.argv[0]).absolute().parent if sys.argv and sys.argv[0] else Path.cwd()
     return [program, Path(os.getcwd())]  # noqa: PTH109 - the folder may not exist any more

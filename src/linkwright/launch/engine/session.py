@@ -101,12 +101,15 @@ class LaunchSession:
 
     @property
     def visiting(self) -> bool:
-        """Whether code of the launch file is running now, which blocks the event loop."""
+        """Whether code of the launch file is running, which blocks the event loop."""
         return self._visiting
 
     @property
     def scratch_folder(self) -> Path:
-        """A folder for files that the processes of this launch read; it is deleted after the launch."""
+        """A folder for files that the processes of this launch read.
+
+        The folder is created on first access and deleted after the launch.
+        """
         if self._scratch is None:
             from linkwright.files.scratch_folders import ScratchFolder
 
@@ -115,7 +118,10 @@ class LaunchSession:
         return Path(self._scratch.name)
 
     def include(self, description: LaunchDescriptionEntity) -> None:
-        """Queue a description to be visited; may be called from any thread, and before the run."""
+        """Queue a description to be visited.
+
+        This method may be called from any thread, and before the run.
+        """
         self._included.append(description)
         if self.loop is not None:
             self.loop.call_soon_threadsafe(self._visit_included)
@@ -127,7 +133,10 @@ class LaunchSession:
         self._queue.put_nowait(event)
 
     def visit(self, entity: LaunchDescriptionEntity, context: LaunchContext) -> None:
-        """Visit an entity and the entities that it returns; an error ends the launch, as in ROS."""
+        """Visit an entity and the entities that it returns.
+
+        As in ROS, an error ends the launch.
+        """
         self._visiting = True
         try:
             self._visit(entity, context)
@@ -169,7 +178,7 @@ class LaunchSession:
         return self.processes.is_busy
 
     def start_process(self, plan: ProcessPlan, name: str) -> None:
-        """Start a process, monitor it until it ends, and respawn it if its plan requests that."""
+        """Start a process, monitor it until it ends, and respawn it if the plan requests a respawn."""
         self.processes.start(plan, name)
 
     def would_handle(self, event: events.Event) -> bool:
@@ -177,11 +186,11 @@ class LaunchSession:
         return self.context.would_handle_event(event)
 
     def report(self, about: object, findings: Sequence[Diagnostic]) -> None:
-        """Report findings about a robot description, both here and in the viewer."""
+        """Report findings about a robot description in the log and in the viewer."""
         self.reload.report(about, findings)
 
     def number_process(self, base_name: str) -> str:
-        """Return a process's log name, which is the program's name followed by the next number."""
+        """Return the log name of a process, which is its base name and the next number."""
         return f"{base_name}-{next(self._process_numbers)}"
 
     def call_later(
@@ -193,9 +202,17 @@ class LaunchSession:
         cancel_on_shutdown: bool = True,
         schedule: Schedule | None = None,
     ) -> Callable[[], None]:
-        """Schedule a visit to entities with the current locals.
+        """Schedule an event and a visit to entities with the current locals.
 
-        Return a function that cancels it. If `schedule` is given, it measures the time instead of the event loop.
+        Args:
+            seconds: the delay.
+            event: the event to emit after the delay.
+            entities: the entities to visit after the delay.
+            cancel_on_shutdown: whether a shutdown of the launch cancels the visit.
+            schedule: measures the delay; by default the event loop does.
+
+        Returns:
+            A function that cancels the visit.
         """
         assert self.loop is not None
         token = object()
@@ -243,7 +260,7 @@ class LaunchSession:
     def interrupt(self, reason: str) -> None:
         """End the launch because the user interrupted it.
 
-        Processes that are already ending get half a second.
+        If the launch is already ending, its processes receive SIGTERM now and SIGKILL half a second later.
         """
         self.log.warning_line("launch", reason)
         if self.ending:
@@ -258,7 +275,10 @@ class LaunchSession:
         return self.processes.seconds_to_end()
 
     def kill_all(self) -> None:
-        """Kill the processes immediately; safe to call from a signal handler."""
+        """Kill the processes immediately.
+
+        This method is safe to call from a signal handler.
+        """
         self.processes.kill_all()
 
     def _log_awaited(self) -> None:
@@ -297,7 +317,7 @@ class LaunchSession:
     def _retry_when_fixed(
         self, entity: LaunchDescriptionEntity, context: LaunchContext, error: DescriptionError
     ) -> None:
-        """Record a failure, and visit the entity again once its model file can be expanded."""
+        """Record a failure, and visit the entity again once its robot description can be expanded."""
         self.fail(error.call)
 
         def again(_text: str) -> None:
@@ -353,7 +373,7 @@ class LaunchSession:
         self._react(event)
 
     def _react(self, event: events.Event) -> None:
-        """Handle events that end the launch, or that stop or signal its processes."""
+        """Handle an event that ends the launch, or that stops or signals processes."""
         if isinstance(event, events.Shutdown):
             if not self.ending:
                 self._begin_end(event)
@@ -397,7 +417,10 @@ class LaunchSession:
         future.add_done_callback(done)
 
     def spawn(self, work: Coroutine[Any, Any, None]) -> None:
-        """Run a coroutine in the background; the launch waits for it to finish."""
+        """Run a coroutine in the background.
+
+        The launch does not become idle until the coroutine has finished.
+        """
         assert self.loop is not None
         task = self.loop.create_task(work)
         self._tasks.add(task)

@@ -21,8 +21,8 @@ class SessionOptions(HostOptions):
         isolate: whether Linkwright's own nodes run in separate processes.
         shutdown_when_idle: whether the launch ends when it is idle.
         skip_missing: whether to skip parts whose package, program or file is missing.
-        command_to_skip_missing: the command that launches with `skip_missing`; None if that is already set or there is
-            no such command.
+        command_to_skip_missing: the command that repeats the launch with `skip_missing`; None if `skip_missing` is set
+            or there is no such command.
     """
 
     isolate: bool = False
@@ -32,7 +32,7 @@ class SessionOptions(HostOptions):
 
 
 class Supervisor(RunningLaunch, Protocol):
-    """The supervisor of the processes of a launch."""
+    """The part of the session that starts and ends the processes of a launch."""
 
     def emit(self, event: Event) -> None:
         """Queue an event."""

@@ -1,6 +1,6 @@
 """The exceptions of ``launch`` that programs catch.
 
-Some of our errors also have the class of a ROS exception.
+Some errors of Linkwright are also instances of such an exception's class.
 """
 
 from __future__ import annotations
@@ -48,14 +48,15 @@ class InvalidPythonLaunchFileError(InvalidLaunchFileError):
 
 
 class SubstitutionFailure(RuntimeError):  # noqa: N818 - its name in ROS
-    """Raised when a substitution cannot be evaluated to text."""
+    """Raised when a substitution cannot be evaluated to a string."""
 
 
 def as_ros_error(ros_error: Exception | None, *diagnostics: Diagnostic) -> LinkwrightError:
     """Return a LinkwrightError that is also an instance of a ROS exception's class.
 
     Args:
-        ros_error: the exception that a program may expect, whose text begins the error's text; None for a plain error.
+        ros_error: the exception that a program may expect; its text precedes the text of the new error. None gives a
+            plain LinkwrightError.
         diagnostics: the diagnostics for the user.
     """
     if ros_error is None:
@@ -66,7 +67,7 @@ def as_ros_error(ros_error: Exception | None, *diagnostics: Diagnostic) -> Linkw
 
 
 def _base_of(kind: type[Exception]) -> type[Exception]:
-    """Return the nearest base class whose constructor takes only a text."""
+    """Return an exception class or its nearest base whose constructor accepts a single string."""
     bases: list[type[Any]] = [candidate for candidate in kind.__mro__ if not issubclass(candidate, LinkwrightError)]
     for base in bases:
         try:

@@ -35,9 +35,10 @@ class Place(ABC):
 
     @staticmethod
     def of_caller() -> Place | None:
-        """Return the markup being read, else the nearest stack frame outside Linkwright, or None.
+        """Return the place of the markup being read, or else of the nearest stack frame of a user's program.
 
-        The frames that started our command line or the event loop (a script, Python itself) do not count.
+        Returns:
+            The place; None if Linkwright's command line or the event loop started the calling code.
         """
         if _being_read:
             return _being_read[-1]
@@ -62,7 +63,7 @@ class Place(ABC):
 
     @abstractmethod
     def span(self, source: SourceText | None = None) -> Span:
-        """Return the lines and columns, which are computed only when a message needs them."""
+        """Return the lines and columns, which are computed only on request."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +94,12 @@ class MarkupPlace(Place):
         return self.text.span(self.start, self.end)
 
     def part(self, start: int, end: int) -> MarkupPlace:
-        """Return a smaller range of the same file, by offsets in the file."""
+        """Return a part of this range.
+
+        Args:
+            start: the first character, as an offset from the start of this range.
+            end: the end of the part, exclusive, as an offset from the start of this range.
+        """
         return MarkupPlace(self.text, min(self.start + start, self.end), min(self.start + end, self.end))
 
 
@@ -107,9 +113,9 @@ class Placed:
     place: Place | None = None
 
     def __new__(cls: type[T], *_: Any, **__: Any) -> T:  # noqa: PYI019 - Self needs Python 3.11
-        """Record the place where the object is created.
+        """Create the object and record the place of the caller.
 
-        This is not done in ``__init__``, because users' classes need not call our constructor.
+        The place is not recorded in ``__init__``, because users' classes need not call our constructor.
         """
         made = super().__new__(cls)
         made.place = Place.of_caller()
@@ -121,7 +127,7 @@ _being_read: list[Place | None] = []
 
 @contextmanager
 def reading_markup_at(place: Place | None) -> Iterator[None]:
-    """Set the place that is recorded for objects created in this context."""
+    """Set the place that is recorded for objects created in this context, None for an unknown place."""
     _being_read.append(place)
     try:
         yield
@@ -133,7 +139,7 @@ def reading_markup_at(place: Place | None) -> Iterator[None]:
 def outside_markup() -> Iterator[None]:
     """Record the caller's place on Python's stack for objects created in this context.
 
-    Otherwise, they would get the place in the markup being read.
+    Outside this context, the objects get the place in the markup that is being read.
     """
     kept = _being_read[:]
     _being_read.clear()
@@ -161,7 +167,7 @@ class CodePlace(Place):
         return read_source(self.file)
 
     def span(self, source: SourceText | None = None) -> Span:
-        """Return the expression at the place, or its line if Python (3.10) records no columns."""
+        """Return the expression at the place, or its entire line if Python records no columns (before 3.11)."""
         positions = getattr(self.code, "co_positions", None)
         if positions is not None:
             exact = next(islice(positions(), self.instruction // 2, None), None)
@@ -188,7 +194,11 @@ def read_source(filename: str) -> SourceText | None:
 
 
 def located(error: LinkwrightError, place: Place | None) -> LinkwrightError:
-    """Return the error with a place set on each diagnostic that has none."""
+    """Set the place of all diagnostics of an error if none of them has a location.
+
+    Returns:
+        The same error.
+    """
     if place is None or any(diagnostic.span for diagnostic in error.diagnostics):
         return error
     source = place.source()
@@ -208,12 +218,12 @@ def error_at(
     """Return a new error about the text at a place.
 
     Args:
-        place: the location.
+        place: the location; None if it is not known.
         code: the code of the diagnostic.
         message: the message of the diagnostic.
         hint: the hint of the diagnostic.
-        ros_error: the exception that ROS raises in this case; the new error has its class and text, for programs that
-            check them.
+        ros_error: the exception that ROS raises in this case. The new error has the class and text of this exception,
+            for programs that check them.
     """
     return located(as_ros_error(ros_error, Diagnostic(code, message, hint=hint)), place)
 

@@ -13,9 +13,9 @@ _MARK = "is_unavailable"
 
 
 def mark_unavailable(error: LinkwrightError) -> LinkwrightError:
-    """Mark an error as caused by a package or program that is not installed.
+    """Mark an error as caused by a package or program that is not installed, and return the error.
 
-    A misspelt name is not such a cause.
+    Errors about misspelt names are not marked.
     """
     vars(error)[_MARK] = True
     return error
@@ -27,10 +27,7 @@ def is_unavailable(error: LinkwrightError) -> bool:
 
 
 def is_foreign(error: LinkwrightError) -> bool:
-    """Return whether an error is about a missing third-party package or module.
-
-    The error occurred in reading a launch file.
-    """
+    """Return whether an error from a launch file is about a missing third-party package or module."""
     if isinstance(error, PackageNotFoundError):
         return not error.is_slip
     return isinstance(error, ModuleNotFoundError) or is_unavailable(error)

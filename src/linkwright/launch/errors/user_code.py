@@ -1,6 +1,6 @@
-"""Exceptions in a user's launch file, reported as findings without a traceback.
+"""Conversion of exceptions in a user's launch file to findings without a traceback.
 
-The findings have a location and similar names.
+The findings have a location, and their hints suggest similar names.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ def explain(error: BaseException, where: str, fallback: Place | None = None) -> 
         fallback: the place to report if no line of the user's code was running.
 
     Returns:
-        The error itself if it is a LinkwrightError, with a place if it had none; otherwise a new error LAUNCH104.
+        The exception itself if it is a LinkwrightError, with a place if it had none; otherwise a new error LAUNCH104.
     """
     trail = list(_user_places(error.__traceback__))
     place = trail[-1] if trail else fallback
@@ -72,7 +72,7 @@ def explain(error: BaseException, where: str, fallback: Place | None = None) -> 
 
 
 def endless_nesting_error(place: Place | None) -> LinkwrightError:
-    """Return the error that reports apparently endless nesting of actions."""
+    """Return the error for launch actions that are nested more deeply than the limit."""
     message = phrase("launch actions are nested without end: more than {count} levels", count=DEEPEST)
     hint = phrase(
         "a launch file that includes itself, or a function that returns itself, needs a condition that ends "
@@ -99,7 +99,7 @@ def _user_places(traceback: TracebackType | None) -> Iterable[Place]:
 
 
 def _hint(error: BaseException, source: SourceText | None, span: Span | None) -> Phrase | None:
-    """Return a hint on what the user may have meant."""
+    """Return a hint on what the user may have meant, or None if there is no guess."""
     if isinstance(error, ImportError):
         return _import_hint(error)
     if isinstance(error, NameError):
@@ -116,9 +116,9 @@ def _hint(error: BaseException, source: SourceText | None, span: Span | None) ->
 
 
 def _public_names(owner: object) -> list[str]:
-    """Return the public names of an object.
+    """Return the public names of an object, except submodules.
 
-    Submodules are excluded, because they are often named like their contents.
+    Submodules are excluded, because they often have the name of an object inside them.
     """
     return [
         name
@@ -150,7 +150,11 @@ def _import_hint(error: ImportError) -> Phrase | None:
 
 
 def _keyword_hint(error: TypeError) -> Phrase | None:
-    """Return a hint that names the nearest valid argument for a call with an unknown argument."""
+    """Return a hint that suggests a valid name for an unexpected keyword argument.
+
+    Returns:
+        The hint; None if the error has another cause or no name is similar.
+    """
     found = _UNEXPECTED_ARGUMENT.search(str(error))
     frame = _innermost_frame(error, users_only=True)
     if not found or frame is None:
@@ -162,7 +166,11 @@ def _keyword_hint(error: TypeError) -> Phrase | None:
 
 
 def _missing_hint(error: TypeError, source: SourceText | None, span: Span | None) -> Phrase | None:
-    """Return a hint that names an argument that may be a misspelt required one."""
+    """Return a hint that a given keyword argument may be the misspelt name of a missing one.
+
+    Returns:
+        The hint; None if the error has another cause or no name is similar.
+    """
     found = _MISSING_ARGUMENT.search(str(error))
     if not found or source is None or span is None:
         return None
@@ -178,7 +186,7 @@ def _missing_hint(error: TypeError, source: SourceText | None, span: Span | None
 
 
 def _called_objects(frame: FrameType, class_name: str) -> list[Any]:
-    """Return the functions and classes of a frame to which a failed call may refer.
+    """Return the functions and classes visible in a frame to which a failed call may refer.
 
     These are the functions with the given name, and the classes with this name or derived from such a class.
     """

@@ -1,6 +1,6 @@
 """Launch file extensions (tags, substitutions, languages).
 
-They come from Linkwright, installed packages and the workspace.
+The extensions are part of Linkwright, of installed packages or of packages in the workspace.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ _STAND_INS = "linkwright.launch_extensions"
 def load(group: str) -> Iterator[tuple[str, Any]]:
     """Yield the name and object of each entry point of a group, Linkwright's first.
 
-    An entry point that fails to load is skipped with a warning.
+    An entry point that cannot be loaded is skipped with a warning.
     """
     installed = entry_points(group=group)
     ours = (EntryPoint(name, value, group) for name, value in _OURS[group].items())
@@ -62,7 +62,7 @@ _loaded: set[tuple[Path, str]] = set()
 
 
 def load_workspace_extensions() -> None:
-    """Import the extension modules of the packages that the active finder finds, each only once."""
+    """Import the launch extensions of the packages in the workspace, each module only once."""
     finder = current_finder()
     for package, share in finder.packages().items():
         for module in _modules(package, share):
@@ -84,7 +84,7 @@ def _import(module: str, finder: PackageFinder, share: Path) -> None:
 
 
 def _modules(package: str, share: Path) -> Iterator[str]:
-    """Yield the modules that a package's entry points name."""
+    """Yield the names of the launch extension modules in a package's entry points."""
     if is_installed(share):
         for folder in python_folders(install_prefix(share), package):
             for path in folder.glob("*-info/entry_points.txt"):
@@ -97,7 +97,7 @@ def _modules(package: str, share: Path) -> Iterator[str]:
 
 
 def _modules_in_lines(lines: list[str]) -> Iterator[str]:
-    """Yield the modules in lines of the form ``name = module:attribute``."""
+    """Yield the module names in lines of the form ``name = module:attribute``."""
     for line in lines:
         _, equals, target = line.partition("=")
         module = target.partition(":")[0].strip()

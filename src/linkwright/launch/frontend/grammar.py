@@ -1,8 +1,8 @@
-r"""Substitutions in text: ``$(name argument ...)``.
+r"""Parser for substitutions in text: ``$(name argument ...)``.
 
-They may contain quotes, escapes and nested substitutions. The rules are those of ``launch.frontend``. A backslash
+Arguments may contain quotes, escapes and nested substitutions. The rules are those of ``launch.frontend``. A backslash
 escapes the next character. Spaces separate arguments, and an argument with spaces is written in single or double
-quotes. Inside quotes, the same kind of quote needs a backslash, and a substitution has unquoted arguments.
+quotes. Inside quotes, the same kind of quote needs a backslash, and the arguments of a substitution are not quoted.
 """
 
 from __future__ import annotations
@@ -82,7 +82,7 @@ class _Reader:
 
         Args:
             until: the closing quote, which is not consumed; empty outside quotes.
-            argument: whether the parts form an argument, which a space or a parenthesis ends, too.
+            argument: whether the parts form an unquoted argument, which a space or a parenthesis also ends.
         """
         parts: list[Substitution] = []
         start = self._at

@@ -50,8 +50,8 @@ _FOLDER = "current_launch_file_directory"
 class IncludeLaunchDescription(Action):
     """Visits the description of another launch file.
 
-    As in ROS, launch configurations are shared with the including file, in both directions. A GroupAction around this
-    action keeps them separate.
+    As in ROS, the including and the included file share their launch configurations. A GroupAction around this action
+    keeps changes of the included file out of the including file.
 
     Args:
         launch_description_source: the source of the description, or a path.
@@ -99,7 +99,7 @@ class IncludeLaunchDescription(Action):
     def launch_arguments(self) -> list[tuple[list[Substitution], Any]]:
         """The names and values of the arguments as substitutions.
 
-        Values that cannot be converted stay as given.
+        A value that cannot be converted to substitutions is unchanged.
         """
         return self._arguments
 
@@ -108,26 +108,32 @@ class IncludeLaunchDescription(Action):
         return f"{type(self).__name__}({self._source.location})"
 
     def get_sub_entities(self) -> Sequence[LaunchDescriptionEntity]:
-        """Return the included description, if it can be read before the launch runs."""
+        """Return the included description in a list.
+
+        The list is empty if the description cannot be read before the launch runs.
+        """
         description = self._source.try_get_launch_description_without_context()
         return [] if description is None else [description]
 
     def hides_entities(self) -> bool:
-        """Return whether the included file is known only when the launch runs."""
+        """Return whether the included description cannot be read before the launch runs."""
         return self._source.try_get_launch_description_without_context() is None
 
     def arguments_given_inside(self) -> tuple[str, ...]:
-        """Return the names of the given arguments whose names are plain text."""
+        """Return the names of the given arguments, except names that contain substitutions."""
         names = (name[0] for name, _ in self._arguments if len(name) == 1)
         return tuple(name.text for name in names if isinstance(name, TextSubstitution))
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
-        """Return the description to visit next, preceded by actions that set its arguments.
+        """Return the entities to visit next.
+
+        They are actions that set the arguments, the included description, and an action that restores the locals of the
+        including file.
 
         Raises:
             RuntimeError: LAUNCH114, a required argument is missing.
             TypeError: LAUNCH114, the value of an argument is not a string.
-            LinkwrightError: the error of the source.
+            LinkwrightError: the description cannot be loaded from its source.
         """
         try:
             description = self._source.get_launch_description(context)
@@ -153,7 +159,11 @@ class IncludeLaunchDescription(Action):
         ]
 
     def explain_inside(self, error: LinkwrightError) -> LinkwrightError:
-        """Return an error in the included description, with a note on where it was included."""
+        """Add a note on where the file was included to an error in the included description.
+
+        Returns:
+            The same error.
+        """
         if self.place is not None and self._source.location_path is not None:
             note = Note(phrase("included from here"), self.place.span(self.place.source()))
             error.diagnostics = tuple(
@@ -163,12 +173,12 @@ class IncludeLaunchDescription(Action):
         return error
 
     def _is_of_substitute(self) -> bool:
-        """Return whether the file is missing from our substitute for a ROS package."""
+        """Return whether the included file does not exist and belongs to our substitute for a ROS package."""
         path = self._source.location_path
         return path is not None and not path.exists() and any(is_substitute(folder) for folder in path.parents)
 
     def _file_values(self) -> dict[str, str]:
-        """Return the locals that hold the path and folder of the included file."""
+        """Return the locals for the path and folder of the included file; empty if there is no file."""
         path = self._source.location_path
         if path is None:
             return {}
@@ -234,10 +244,10 @@ def _normalized(value: Any) -> Any:
 class IncludeScopedLaunchDescription(IncludeLaunchDescription):
     """An `IncludeLaunchDescription` with its own scope.
 
-    Launch configurations and environment end with the included file.
+    Changes to launch configurations and environment variables are undone after the included file.
     """
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
-        """Return the entities to visit next: the description, inside a scope."""
+        """Return the entities to visit next, enclosed by actions that open and close the scope."""
         opening: list[LaunchDescriptionEntity] = [PushLaunchConfigurations(), PushEnvironment()]
         return [*opening, *super().execute(context), PopEnvironment(), PopLaunchConfigurations()]

@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
 
 def _method(methods: dict[str, Any], name: str) -> Any:
-    """Return the parse function of a tag or substitution.
+    """Return the parse function of a tag or substitution, or None if the name is unknown.
 
-    If the name is unknown, load the extensions of unbuilt packages first.
+    If the name is not registered, the launch extensions in the workspace are loaded first.
     """
     if name not in methods:
         from linkwright.launch.frontend.extensions import load_workspace_extensions

@@ -23,7 +23,7 @@ _MARKUP = {".xml": "xml", ".launch": "xml", ".yaml": "yaml", ".yml": "yaml"}
 def load_launch_file(path: Path) -> LaunchDescription:
     """Load the description of a launch file.
 
-    The kind of the file is determined by its name or else by trying each.
+    The file's name determines the language. If the name does not, markup and then Python are tried.
 
     Raises:
         LinkwrightError: LAUNCH101 to LAUNCH109 and LAUNCH115 to LAUNCH119, the errors in the file.
@@ -106,14 +106,14 @@ def get_launch_description_from_any_launch_file(
     *,
     parser: Any = None,  # noqa: ARG001 - the interface in ROS
 ) -> LaunchDescription:
-    """Load a launch file of any kind.
+    """Load the description of a launch file in Python or markup.
 
-    The kind that its name suggests is tried first, and then the other.
+    The language that the file's name suggests is tried first, and then the other.
 
     Raises:
-        InvalidLaunchFileError: LAUNCH107, neither can read it.
+        InvalidLaunchFileError: LAUNCH107, the file cannot be read as either.
     """
-    names = sys.modules.get(_ANY, sys.modules[__name__])  # users and tests may replace them
+    names = sys.modules.get(_ANY, sys.modules[__name__])  # users and tests may replace these functions
     in_markup = names.get_launch_description_from_frontend_launch_file
     in_python = names.get_launch_description_from_python_launch_file
     path = Path(launch_file_path)

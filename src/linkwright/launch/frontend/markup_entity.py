@@ -1,6 +1,6 @@
 """The base class of XML and YAML entities.
 
-It records the parts that were read, and reports the others.
+The class records the parts that were read, and reports the others as unknown.
 """
 
 from __future__ import annotations
@@ -44,12 +44,15 @@ class MarkupEntity(Entity):
         return self._place
 
     def _check_all_asked(self, present: Iterable[str], what: str, ros_text: str) -> None:
-        """Report the parts that were not read.
+        """Raise an error if parts of the entity were not read.
 
         Args:
             present: the names of all parts.
-            what: the word for such a part in the message.
+            what: the term for such a part in the message.
             ros_text: ROS's own text, to which the names are appended.
+
+        Raises:
+            ValueError: LAUNCH116, a part was not read.
         """
         unknown = [name for name in present if name not in self._asked]
         if not unknown:
@@ -90,7 +93,7 @@ class MarkupEntity(Entity):
 
 
 def type_words(data_type: Any) -> Phrase:
-    """Return the name of a type in words for users."""
+    """Return a type in words for messages, such as "an integer"."""
     words = {
         int: phrase("an integer"),
         float: phrase("a number"),

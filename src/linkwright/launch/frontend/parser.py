@@ -23,17 +23,17 @@ if TYPE_CHECKING:
 
 
 class Parser:
-    """Creates actions and substitutions from entities; a parser for a language overrides `load`."""
+    """Creates actions and substitutions from entities.
+
+    The parser of each language overrides `load`.
+    """
 
     extensions_loaded: ClassVar[bool] = False
     frontend_parsers: ClassVar[dict[str, type[Parser]] | None] = None
 
     @classmethod
     def load_launch_extensions(cls) -> None:
-        """Import the modules that expose actions and substitutions.
-
-        They are ours, and the modules that entry points name.
-        """
+        """Import Linkwright's and all installed modules that expose actions and substitutions."""
         if Parser.extensions_loaded:
             return
         for _ in extensions.load(extensions.ACTIONS):
@@ -42,10 +42,7 @@ class Parser:
 
     @classmethod
     def load_parser_implementations(cls) -> None:
-        """Load the parsers.
-
-        They are ours for XML and YAML, and the parsers of packages with an entry point for one.
-        """
+        """Load Linkwright's parsers for XML and YAML, and the parsers of installed packages."""
         if Parser.frontend_parsers is not None:
             return
         parsers: dict[str, type[Parser]] = {}
@@ -89,7 +86,7 @@ class Parser:
             )
             raise error_at(entity.place, "LAUNCH109", message, ros_error=ros_error)
         deprecated = entity.get_attr("deprecated", optional=True)
-        entity.get_attr("version", optional=True)  # the format version in the ROS 2 launch design
+        entity.get_attr("version", optional=True)  # "version" is the format version in the ROS 2 launch design
         actions = []
         problems = []
         for child in entity.children:
@@ -109,7 +106,10 @@ class Parser:
 
     @classmethod
     def get_file_extensions(cls) -> set[str]:
-        """Return the file name extensions that this parser reads, without the leading dot."""
+        """Return the file name extensions that this parser reads, without the leading dot.
+
+        This base class returns an empty set.
+        """
         return set()
 
     @classmethod
@@ -130,7 +130,11 @@ class Parser:
 
     @classmethod
     def get_parser_from_extension(cls, extension: str) -> type[Parser]:
-        """Return the parser with this name."""
+        """Return the parser with this name.
+
+        Raises:
+            RuntimeError: there is no such parser.
+        """
         warnings.warn(
             "Parser.get_parser_from_extension is deprecated, use Parser.get_parsers_from_filename instead",
             stacklevel=2,
@@ -159,7 +163,7 @@ class Parser:
     def load(cls, file: Any) -> tuple[Entity, Parser]:
         """Return the root entity of a path or open file, and its parser.
 
-        The file's name selects the parser. If the name selects none, each parser is tried.
+        If the file's name does not determine the parser, all parsers are tried.
 
         Raises:
             InvalidFrontendLaunchFileError: LAUNCH107 to LAUNCH109 and XML codes, the errors in the file.
@@ -172,7 +176,7 @@ class Parser:
             again.name = name
             try:
                 return parser.load(again)
-            except RecursionError:  # the text is nested too deeply
+            except RecursionError:  # no other parser can read a text that is nested too deeply
                 raise
             except Exception as error:  # noqa: BLE001 - parsers of packages may raise anything
                 errors.append(error)
@@ -203,9 +207,9 @@ def read_file(file: Any) -> tuple[str, str]:
 
 
 def _likely_diagnostics(name: str, text: str, errors: Sequence[Exception]) -> tuple[Diagnostic, ...]:
-    """Return findings on a file that no parser can read.
+    """Return the findings of the parser for the most likely language of an unreadable file.
 
-    They come from the parser for its most likely language.
+    If no parser fits, a single finding LAUNCH107 is returned.
     """
     reports = [error.diagnostics for error in errors if isinstance(error, LinkwrightError)]
     looks_like_xml = text.lstrip().startswith("<")

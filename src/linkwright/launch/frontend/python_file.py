@@ -1,4 +1,4 @@
-"""Python launch files: reading them, running them, and reporting their errors."""
+"""Reads and runs Python launch files, and reports their errors."""
 
 from __future__ import annotations
 
@@ -36,9 +36,9 @@ def load_python_launch_file(path: Path) -> LaunchDescription:
     """Run a launch file and return the description from its ``generate_launch_description()``.
 
     Raises:
-        LinkwrightError: LAUNCH101, there is no such file; LAUNCH102, it cannot be read; LAUNCH103, a syntax error;
-            LAUNCH104, an exception inside it; LAUNCH105, it has no such function; LAUNCH106, the function returns no
-            description.
+        LinkwrightError: LAUNCH101, there is no such file; LAUNCH102, the file cannot be read; LAUNCH103, it has a
+            syntax error; LAUNCH104, it raised an exception; LAUNCH105, it does not define the function;
+            LAUNCH106, the function does not return a LaunchDescription.
     """
     with outside_markup():
         source = read_launch_file(path)
@@ -69,9 +69,9 @@ def load_python_launch_file(path: Path) -> LaunchDescription:
 
 
 def _definition(function: Callable[..., Any], source: SourceText) -> Place:
-    """Return the line of a launch file that defines a function.
+    """Return the place of the line that defines a function in a launch file.
 
-    It is the first line if another file defines the function.
+    If another file defines the function, the place is the first line of the launch file.
     """
     code = getattr(function, "__code__", None)
     line = code.co_firstlineno if code is not None and code.co_filename == source.name else 1
@@ -90,7 +90,10 @@ def load_python_module(path: Path) -> ModuleType:
 
 
 def _run(source: SourceText, path: Path) -> ModuleType:
-    """Run a launch file with ``__file__`` set to a path; messages name the user's own file."""
+    """Run a launch file as a module whose ``__file__`` is a path, and return the module.
+
+    Messages name the user's own file, even if the path is a copy of it.
+    """
     try:
         code = compile(source.text, source.name, "exec", dont_inherit=True)
     except SyntaxError as error:
@@ -112,12 +115,12 @@ def _run(source: SourceText, path: Path) -> ModuleType:
 
 
 def read_launch_file(path: Path) -> SourceText:
-    """Return the text of a launch file of any kind.
+    """Return the text of a launch file in any language.
 
-    It is named after the user's own file (see `source_of`).
+    The text has the name of the user's own file (see `source_of`).
 
     Raises:
-        LinkwrightError: LAUNCH101, there is no such file; LAUNCH102, it cannot be read.
+        LinkwrightError: LAUNCH101, there is no such file; LAUNCH102, the file cannot be read.
     """
     name = source_of(str(path))
     shown = display_path(name)

@@ -20,11 +20,11 @@ from linkwright.launch.model.substitution import (
 
 
 class LaunchDescriptionSource(Placed):
-    """A launch description, or the file to read it from.
+    """A launch description, or the file that contains it.
 
     Args:
         launch_description: the description, if it already exists.
-        location: the path of the file otherwise.
+        location: the path of the file, if there is no description yet.
         method: how the description is loaded, for listings.
     """
 
@@ -41,14 +41,14 @@ class LaunchDescriptionSource(Placed):
 
     @property
     def location(self) -> str:
-        """The path as given, or a listing of its substitutions until they are evaluated."""
+        """The evaluated path, or a listing of the path's substitutions before they are evaluated."""
         if self._known_location is not None:
             return self._known_location
         return " + ".join(map(repr, self._location))
 
     @property
     def location_path(self) -> Path | None:
-        """The path, once it is known; None before that, or for a description without a file."""
+        """The absolute path; None if it is not evaluated yet or the description has no file."""
         return Path.cwd() / self._known_location if self._known_location else None
 
     @property
@@ -57,7 +57,7 @@ class LaunchDescriptionSource(Placed):
         return self._method
 
     def get_launch_description(self, context: LaunchContext) -> LaunchDescription:
-        """Return the description.
+        """Return the description, which is read from its file on the first call.
 
         Raises:
             LinkwrightError: the errors in the file.
@@ -67,7 +67,7 @@ class LaunchDescriptionSource(Placed):
         return self._get()
 
     def try_get_launch_description_without_context(self) -> LaunchDescription | None:
-        """Return the description, if its path contains no substitutions that need a context."""
+        """Return the description, or None if its path contains substitutions that need a context."""
         if self._description is None and all(isinstance(part, TextSubstitution) for part in self._location):
             self._known_location = "".join(part.text for part in self._location if isinstance(part, TextSubstitution))
             return self._get()
@@ -83,7 +83,10 @@ class LaunchDescriptionSource(Placed):
         return self._description
 
     def _get_launch_description(self, location: str) -> LaunchDescription:
-        """Read the file; users' classes override this method, which has its name in ROS."""
+        """Read the description from the file.
+
+        Users' classes override this method, so it keeps its name in ROS.
+        """
         raise NotImplementedError(f"{type(self).__name__} does not implement how to read '{location}'")
 
 
@@ -107,7 +110,7 @@ class FrontendLaunchDescriptionSource(LaunchDescriptionSource):
     Args:
         launch_file_path: the path of the file.
         method: how the file is loaded, for listings.
-        parser: the parser to use, by default the parser for the file's name.
+        parser: the parser of the file; by default, the file's name determines the parser.
     """
 
     def __init__(
@@ -164,7 +167,13 @@ class YAMLLaunchDescriptionSource(FrontendLaunchDescriptionSource):
 
 
 class AnyLaunchDescriptionSource(LaunchDescriptionSource):
-    """A launch file in any language, which is determined from its name or else by trying each."""
+    """A launch file in any language.
+
+    The file's name determines the language. If the name does not, markup and then Python are tried.
+
+    Args:
+        launch_file_path: the path of the file.
+    """
 
     def __init__(self, launch_file_path: SomeSubstitutionsType | Path) -> None:
         super().__init__(None, launch_file_path, "any launch file")

@@ -18,10 +18,10 @@ _SEPARATOR = "-sep"
 
 
 class Entity(MarkupEntity):
-    """An element of a launch file.
+    """An element of an XML launch file.
 
     Args:
-        xml_element: the element; an element of ``xml.etree.ElementTree`` is accepted, too.
+        xml_element: the element, of `linkwright.xmltree` or of ``xml.etree.ElementTree``.
         parent: the enclosing entity.
     """
 
@@ -31,7 +31,10 @@ class Entity(MarkupEntity):
 
     @property
     def children(self) -> list[AnyEntity]:
-        """The child elements; reading this property marks all of them as read."""
+        """The child elements.
+
+        Reading this property marks all child elements as read.
+        """
         self._asked.update((element.tag, None) for element in self._element.elements())
         return [Entity(element, parent=self) for element in self._element.elements()]
 
@@ -46,10 +49,10 @@ class Entity(MarkupEntity):
         self._check_all_asked(self._element.attributes, "attribute", "Unexpected attribute(s) found in")
 
     def get_attr(self, name: str, *, data_type: Any = str, optional: bool = False, can_be_str: bool = True) -> Any:
-        """Return an attribute, or the child elements with a tag.
+        """Return the value of an attribute, or the child elements with a tag.
 
-        See `linkwright.launch.model.markup.entity.Entity`. The value is converted to the type. If there is an attribute
-        ``NAME-sep``, it is the separator at which the value is split into a list.
+        The value is converted to the type. If there is an attribute ``NAME-sep``, the value is a list that is split at
+        this separator. See `linkwright.launch.model.markup.entity.Entity`.
         """
         self._asked[name] = None
         attributes = self._element.attributes

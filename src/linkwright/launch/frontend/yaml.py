@@ -23,7 +23,7 @@ _BARE = {"include": "file"}
 
 
 class Entity(MarkupEntity):
-    """An action of a launch file: a mapping of attributes, or a list of actions.
+    """An action in a YAML launch file: a mapping of attributes, or a list of actions.
 
     Args:
         element: the mapping or list.
@@ -96,10 +96,10 @@ class Entity(MarkupEntity):
             raise error_at(self.place, "LAUNCH116", message, ros_error=ValueError(text))
 
     def get_attr(self, name: str, *, data_type: Any = str, optional: bool = False, can_be_str: bool = True) -> Any:
-        """Return an attribute, or the child entities with a name.
+        """Return the value of an attribute, or the child entities with a name.
 
-        See `linkwright.launch.model.markup.entity.Entity`. The value must have the type under YAML's rules, but a
-        number or boolean is accepted where a string is expected, as in newer ROS versions.
+        The value must have the type under YAML's rules. As in newer ROS versions, a number or boolean is also accepted
+        as a string. See `linkwright.launch.model.markup.entity.Entity`.
         """
         self._asked[name] = None
         if not isinstance(self._element, (dict, list)):
@@ -137,7 +137,7 @@ class Entity(MarkupEntity):
 
 
 def _scalar_text(value: bool | float) -> str:
-    """Return a YAML value as text with the same meaning in conditions and parameters."""
+    """Return a YAML boolean or number as a string that conditions and parameters read as the same value."""
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
@@ -149,7 +149,7 @@ class Parser(AnyParser):
         """Return the root entity of a path or open file, and a parser for it.
 
         Raises:
-            LinkwrightError: LAUNCH108, the file is not YAML; LAUNCH109, it is not a mapping with one key.
+            LinkwrightError: LAUNCH108, the file is not YAML; LAUNCH109, the file is not a mapping with one key.
         """
         name, text = read_file(file)
         tree = load(text, name)
@@ -186,7 +186,7 @@ class _Loader(yaml.SafeLoader):
         self._open_anchors: list[str | None] = []
 
     def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
-        """Compose a node, and reject an alias inside its own anchor, which would recurse endlessly."""
+        """Compose a node, and reject an alias inside the node of its anchor, which would recurse endlessly."""
         event: Any = self.peek_event()  # type: ignore[no-untyped-call]  # of PyYAML
         anchor = getattr(event, "anchor", None)
         if isinstance(event, yaml.AliasEvent) and anchor in self._open_anchors:
@@ -221,7 +221,9 @@ _Loader.add_constructor("tag:yaml.org,2002:map", _mapping)
 
 
 def load(text: str, name: str) -> Any:
-    """Load the data of a YAML text, with each string as a `PlacedText`.
+    """Load the data of a YAML text.
+
+    Each string is a `PlacedText`, and each mapping is a `PlacedMapping`.
 
     Raises:
         LinkwrightError: LAUNCH108, the text is not YAML.

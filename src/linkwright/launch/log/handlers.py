@@ -25,7 +25,7 @@ class ForEachLogger:
         self._formatters.pop(logger.name, None)
 
     def format(self, record: logging.LogRecord) -> str:
-        """Format a log record as a line."""
+        """Return the line for a log record."""
         record.msg, record.args = record.getMessage(), None
         formatter = self._formatters.get(record.name)
         if formatter is not None:
@@ -50,9 +50,9 @@ class WatchedFileHandler(ForEachLogger, logging.handlers.WatchedFileHandler):
 
 
 def handler_class(name: str) -> type[Any]:
-    """Return the extended form of a class in `logging.handlers`.
+    """Return a class of `logging.handlers` combined with `ForEachLogger`.
 
-    This is used as the ``__getattr__`` of a module.
+    This function is used as the ``__getattr__`` of a module.
 
     Raises:
         AttributeError: there is no such handler.

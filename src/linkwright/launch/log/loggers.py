@@ -1,7 +1,7 @@
 """The loggers of ``launch.logging``: Python's loggers with the format of launch lines.
 
-They are separate from the launcher's own log (`linkwright.hosting.launch_log`), but they have the same format and use
-the same environment variables. A file is opened when its first line is written.
+These loggers are separate from the launcher's own log (`linkwright.hosting.launch_log`), but have the same format and
+use the same environment variables. A log file is opened when its first line is written.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _OUTPUTS: Mapping[str, Mapping[str, set[str]]] = {
 
 
 class _ScreenHandler(StreamHandler):
-    """Writes lines to the current stdout."""
+    """Writes lines to ``sys.stdout``, even if a program replaces this stream."""
 
     @property
     def stream(self) -> Any:
@@ -47,7 +47,7 @@ class _MainFile(Handler):
     """Writes lines to the main log file, which is opened when the first line is written."""
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Write the line of a log record."""
+        """Write the line of a log record, unless the logger has its own handler for the same file."""
         handler = launch_config.get_log_file_handler(launch_config.log_file_name)
         if handler not in logging.getLogger(record.name).handlers:
             handler.handle(record)
@@ -62,7 +62,7 @@ def _make_unique_log_dir(*, base_path: str) -> str:
 
 
 def _renew_latest_log_dir(*, log_dir: str) -> bool:  # noqa: ARG001 - ROS's tests replace a function with this signature
-    return True  # `new_log_folder` has already updated it
+    return True  # `new_log_folder` has already updated the link
 
 
 class LaunchConfig:
@@ -87,7 +87,7 @@ class LaunchConfig:
 
     @property
     def level(self) -> int:
-        """The minimum level that is logged."""
+        """The minimum level of the lines that are logged."""
         return logging.root.getEffectiveLevel()
 
     @level.setter
@@ -97,7 +97,7 @@ class LaunchConfig:
 
     @property
     def log_dir(self) -> str:
-        """The folder of this launch's log files, created on first use."""
+        """The folder of the launch's log files, which is created on first use."""
         if self._log_dir is None:
             module = _public_module()
             self._log_dir = module._make_unique_log_dir(base_path=_get_logging_directory())
@@ -119,13 +119,13 @@ class LaunchConfig:
         self._log_dir = None if new_log_dir is None else str(new_log_dir)
 
     def share(self, folder: Path) -> None:
-        """Use the log folder of the running launch, unless log files already exist."""
+        """Use the log folder of the running launch, unless loggers already write to files elsewhere."""
         if not self.file_handlers:
             self._log_dir = str(folder)
 
     @property
     def log_handler_factory(self) -> Callable[..., logging.Handler]:
-        """The factory of file handlers, which is called with a path and ``encoding``."""
+        """The factory of file handlers, which is called with a path and the keyword argument ``encoding``."""
         return self._log_handler_factory or (FileHandler if os.name == "nt" else WatchedFileHandler)
 
     @log_handler_factory.setter
@@ -135,7 +135,11 @@ class LaunchConfig:
     def set_screen_format(self, screen_format: str | None, *, screen_style: Any = None) -> None:
         """Set the format of lines on the screen.
 
-        It is ``default``, ``default_with_timestamp``, or a format string.
+        The environment variable ``OVERRIDE_LAUNCH_SCREEN_FORMAT`` takes precedence.
+
+        Args:
+            screen_format: ``default``, ``default_with_timestamp``, or a format string.
+            screen_style: the style of a format string, as in `logging.Formatter`; ``{`` by default.
         """
         override = os.environ.get("OVERRIDE_LAUNCH_SCREEN_FORMAT")
         self.screen_formatter = _formatter(screen_format, screen_style, override, FORMATS, "screen")
@@ -143,7 +147,14 @@ class LaunchConfig:
             self.screen_handler.setFormatter(self.screen_formatter)
 
     def set_log_format(self, log_format: str | None, *, log_style: Any = None) -> None:
-        """Set the format of lines in log files: ``default``, or a format string."""
+        """Set the format of lines in log files.
+
+        The environment variable ``OVERRIDE_LAUNCH_LOG_FORMAT`` takes precedence.
+
+        Args:
+            log_format: ``default``, or a format string.
+            log_style: the style of a format string, as in `logging.Formatter`; ``{`` by default.
+        """
         override = os.environ.get("OVERRIDE_LAUNCH_LOG_FORMAT")
         self.file_formatter = _formatter(log_format, log_style, override, FILE_FORMATS, "log")
         for handler in self.file_handlers.values():
@@ -157,11 +168,14 @@ class LaunchConfig:
         return self.screen_handler
 
     def get_log_file_path(self, file_name: str = MAIN_LOG) -> str:
-        """Return the path of a log file."""
+        """Return the path of a file in the log folder."""
         return str(Path(self.log_dir) / file_name)
 
     def get_log_file_handler(self, file_name: str = MAIN_LOG) -> logging.Handler:
-        """Return the handler for a log file; repeated calls return the same handler."""
+        """Return the handler for a file in the log folder.
+
+        Repeated calls return the same handler.
+        """
         if file_name not in self.file_handlers:
             handler = self.log_handler_factory(self.get_log_file_path(file_name), encoding="utf-8")
             handler.setFormatter(self.file_formatter)
@@ -184,9 +198,9 @@ def _formatter(
 
 
 def _public_module() -> Any:
-    """Return the public module with the functions that create folders.
+    """Return the module ``launch.logging`` if it is loaded, else this module.
 
-    Users and ROS's tests replace the functions in this module.
+    Users and ROS's tests replace the functions that create log folders in ``launch.logging``.
     """
     return sys.modules.get("launch.logging") or sys.modules[__name__]
 
@@ -197,7 +211,7 @@ launch_config = LaunchConfig()
 def get_logger(name: str | None = None) -> logging.Logger:
     """Return a logger that writes to the screen and the main log file.
 
-    It has the format of the launcher's lines.
+    Its lines have the format of the launcher's lines.
     """
     logger = logging.getLogger(name)
     for handler in (launch_config.get_screen_handler(), launch_config.main_file):
@@ -209,7 +223,7 @@ def get_logger(name: str | None = None) -> logging.Logger:
 
 
 def _is_handled_by_parent(logger: logging.Logger, handler: logging.Handler) -> bool:
-    """Return whether a parent logger already passes the logger's lines to a handler."""
+    """Return whether a logger above a logger in the hierarchy has a handler and receives the logger's lines."""
     above: logging.Logger | None = logger if logger.propagate else None
     while above is not None and above.parent is not None:
         above = above.parent
@@ -233,7 +247,7 @@ def get_output_loggers(process_name: str, output_config: Any) -> tuple[logging.L
         output_config: the destinations; see ``output`` of `linkwright.launch.model.actions.ExecuteProcess`.
 
     Raises:
-        ValueError: there is no such destination.
+        ValueError: the destinations are not valid.
     """
     config = _normalize_output_configuration(output_config)
     loggers = []
@@ -282,9 +296,9 @@ def _normalize_output_configuration(config: Any) -> dict[str, set[str]]:
 
 
 def reset() -> None:
-    """Remove the handlers and levels of all loggers, and reset the configuration.
+    """Reset the configuration, and the loggers that have handlers of this package.
 
-    Only loggers created in this module are affected.
+    Their handlers are removed, and their levels are unset.
     """
     for logger in list(logging.root.manager.loggerDict.values()):
         handlers = getattr(logger, "handlers", ())

@@ -1,1 +1,4 @@
-"""The elements of launch descriptions; this package reads no files and starts no processes."""
+"""The elements of launch descriptions.
+
+This package reads no files and starts no processes.
+"""

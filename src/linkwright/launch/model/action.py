@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Action(LaunchDescriptionEntity):
-    """An entity that does something when it is visited and its condition holds.
+    """An entity that is executed when it is visited and its condition holds.
 
     Args:
         condition: determines at each visit whether `execute` runs.
@@ -29,12 +29,12 @@ class Action(LaunchDescriptionEntity):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Return the class and keyword arguments for an XML or YAML tag.
+        """Return the class and keyword arguments of the action for an XML or YAML tag.
 
-        This base class reads ``if`` or ``unless``.
+        This base class reads the attributes ``if`` and ``unless``.
 
         Raises:
-            RuntimeError: LAUNCH118, the tag has both.
+            RuntimeError: LAUNCH118, the tag has both attributes.
         """
         return cls, parse_condition(entity, parser)
 
@@ -44,17 +44,20 @@ class Action(LaunchDescriptionEntity):
         return getattr(self, "_condition", None)
 
     def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
-        """Return the child entities if the action has no condition, else nothing."""
+        """Return the child entities, or an empty list if the action has a condition."""
         return list(self.get_sub_entities()) if self.condition is None else []
 
     def describe_conditional_sub_entities(self) -> list[tuple[str, Iterable[LaunchDescriptionEntity]]]:
-        """Return the child entities if the action has a condition, else nothing."""
+        """Return a text with the condition, and the child entities.
+
+        The list is empty if the action has no condition.
+        """
         if self.condition is None:
             return []
         return [("Conditionally included: " + str(self.condition), list(self.get_sub_entities()))]
 
     def visit(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity] | None:
-        """Execute the action if the condition holds; return the entities to visit next, or None."""
+        """Execute the action if the condition holds, and return the entities to visit next or None."""
         if self.condition is not None and not self.condition.evaluate(context):
             return None
         following = self.execute(context)
@@ -62,7 +65,7 @@ class Action(LaunchDescriptionEntity):
         return None if following is None else as_entities(following)
 
     def _emit_completion(self, context: LaunchContext) -> None:
-        """Emit the completion event if there is a handler for it.
+        """Emit the completion event, unless no handler accepts it.
 
         If the action has a future, the event is emitted when the future is done.
         """
@@ -82,17 +85,17 @@ class Action(LaunchDescriptionEntity):
         return None
 
     def get_sub_entities(self) -> Sequence[LaunchDescriptionEntity]:
-        """Return the child entities, among which declared arguments are searched."""
+        """Return the child entities, which are searched for declared arguments."""
         return []
 
 
 def parse_condition(entity: Entity, parser: Parser) -> dict[str, Any]:
-    """Return the keyword argument ``condition`` of a tag.
+    """Return the keyword argument ``condition`` for a tag's attribute ``if`` or ``unless``.
 
-    It comes from ``if`` or ``unless``, if the tag has one.
+    The result is empty if the tag has neither attribute.
 
     Raises:
-        RuntimeError: LAUNCH118, the tag has both.
+        RuntimeError: LAUNCH118, the tag has both attributes.
     """
     conditions = (("if", IfCondition), ("unless", UnlessCondition))
     given = {kind: entity.get_attr(name, optional=True) for name, kind in conditions}

@@ -23,7 +23,7 @@ class InvalidConditionExpressionError(Exception):
     """Raised when the expression of a condition is neither true nor false.
 
     Args:
-        given: the expression's value and the accepted true and false values; or only a text.
+        given: the expression's value, followed by the accepted true and false values; or only a message.
     """
 
     def __init__(self, *given: Any) -> None:
@@ -39,21 +39,25 @@ class Condition(Placed):
     """Determines whether a visited action runs.
 
     Args:
-        predicate: called with the launch context; without it, the condition never holds.
+        predicate: called with the launch context; returns whether the condition holds. By default, the condition never
+            holds.
     """
 
     def __init__(self, *, predicate: Callable[[LaunchContext], bool] | None = None) -> None:
         self._predicate = predicate
 
     def describe(self) -> str:
-        """Return a short text for listings."""
+        """Return a short text that describes the condition in listings."""
         return f"{type(self).__name__}()"
 
     def __str__(self) -> str:
         return self.describe()
 
     def _predicate_func(self, context: LaunchContext) -> bool:
-        """Evaluate the condition, under ROS's private name, which some launch files call."""
+        """Return whether the condition holds.
+
+        Some launch files call this method by its private name in ROS.
+        """
         return self.evaluate(context)
 
     def evaluate(self, context: LaunchContext) -> bool:
@@ -69,7 +73,7 @@ class Condition(Placed):
 
 
 class _OnExpression(Condition):
-    """The base class of conditions on an expression."""
+    """The base class of conditions that evaluate an expression."""
 
     def __init__(self, predicate_expression: Any, wanted: bool) -> None:
         expression = normalize_to_list_of_substitutions(_text(predicate_expression))
@@ -98,7 +102,7 @@ class UnlessCondition(_OnExpression):
 class LaunchConfigurationEquals(Condition):
     """A condition that holds if a launch configuration has the given value.
 
-    The value None means that it is unset.
+    The value None represents an unset launch configuration.
     """
 
     def __init__(self, launch_configuration_name: str, expected_value: SomeSubstitutionsType | None) -> None:
@@ -108,7 +112,7 @@ class LaunchConfigurationEquals(Condition):
 class LaunchConfigurationNotEquals(Condition):
     """A condition that holds unless a launch configuration has the given value.
 
-    The value None means that it is unset.
+    The value None represents an unset launch configuration.
     """
 
     def __init__(self, launch_configuration_name: str, expected_value: SomeSubstitutionsType | None) -> None:
@@ -129,10 +133,10 @@ def _equals(name: str, expected: SomeSubstitutionsType | None) -> Callable[[Laun
 
 
 def evaluate_condition_expression(context: LaunchContext, expression: Any) -> bool:
-    """Evaluate an expression: ``true`` or ``1``, ``false`` or ``0``, in upper or lower case.
+    """Return the value of an expression: ``true`` or ``1``, ``false`` or ``0``, in upper or lower case.
 
     Raises:
-        InvalidConditionExpressionError: the expression is any other text.
+        InvalidConditionExpressionError: the expression evaluates to any other text.
     """
     text = perform_substitutions(context, normalize_to_list_of_substitutions(_text(expression)))
     folded = text.strip().lower()

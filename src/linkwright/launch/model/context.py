@@ -22,16 +22,16 @@ if TYPE_CHECKING:
 
 
 class Performable(Protocol):
-    """The interface of substitutions as the context uses it."""
+    """The part of a substitution's interface that the context uses."""
 
     place: Place | None
 
     def perform(self, context: LaunchContext) -> str:
-        """Return the text of the substitution."""
+        """Evaluate the substitution, and return the resulting text."""
 
 
 class Handler(Protocol):
-    """The interface of event handlers as the context uses it."""
+    """The part of an event handler's interface that the context uses."""
 
     def matches(self, event: Any) -> bool:
         """Return whether the handler accepts the event."""
@@ -99,7 +99,7 @@ class LaunchContext:
     Attributes:
         argv: the command-line arguments with which the launch was started.
         launch_configurations: name -> value of the launch configurations in scope.
-        environment: the environment variables of this process, as in ROS; changes are visible to processes started
+        environment: the environment variables of this process, as in ROS. Changes are visible to processes started
             later and to ``$(env ...)`` in xacro files.
     """
 
@@ -120,7 +120,10 @@ class LaunchContext:
         self._session: RunningLaunch | None = None
 
     def perform_substitution(self, substitution: Performable) -> str:
-        """Evaluate a substitution; an error includes the substitution's location."""
+        """Evaluate a substitution, and return the resulting text.
+
+        An error gets the location of the substitution if it has none.
+        """
         try:
             return substitution.perform(self)
         except LinkwrightError as error:
@@ -136,7 +139,7 @@ class LaunchContext:
         return Locals(self.get_locals_as_dict())
 
     def get_locals_as_dict(self) -> dict[str, Any]:
-        """Return the locals as a dict."""
+        """Return the locals of all scopes as a dictionary."""
         merged = dict(self._globals)
         for layer in self._locals:
             merged.update(layer)
@@ -153,7 +156,7 @@ class LaunchContext:
                 layer.pop(name, None)
 
     def extend_globals(self, extensions: dict[str, Any]) -> None:
-        """Set values that persist across scopes."""
+        """Set locals that persist across scopes."""
         self._globals.update(extensions)
 
     def push_locals(self) -> None:
@@ -177,7 +180,7 @@ class LaunchContext:
         self._configurations_stack.append(dict(self.launch_configurations))
 
     def pop_launch_configurations(self) -> None:
-        """Close the innermost scope of launch configurations, and restore the previous ones.
+        """Close the innermost scope of launch configurations, and restore the configurations from before it.
 
         Raises:
             RuntimeError: no scope is open.
@@ -193,7 +196,7 @@ class LaunchContext:
         self._environment_stack.append(dict(self.environment))
 
     def pop_environment(self) -> None:
-        """Close the innermost scope of environment variables, and restore the previous ones.
+        """Close the innermost scope of environment variables, and restore the variables from before it.
 
         Raises:
             RuntimeError: no scope is open.
@@ -203,7 +206,7 @@ class LaunchContext:
         self.reset_environment(self._environment_stack.pop())
 
     def reset_environment(self, environment: dict[str, str] | None = None) -> None:
-        """Replace the environment, by default with the environment at the creation of the context."""
+        """Replace the environment, by default with the environment when the context was created."""
         if environment is None:
             environment = self._initial_environment
         for name in [name for name in self.environment if name not in environment]:
@@ -211,7 +214,10 @@ class LaunchContext:
         self.environment.update(environment)
 
     def snapshot(self) -> LaunchContext:
-        """Return a context with the current configurations, to retry an action later."""
+        """Return a context with the current configurations and locals, for retrying an action later.
+
+        The copy shares the event queue and event handlers with this context.
+        """
         copy = LaunchContext(argv=self.argv, noninteractive=self.noninteractive)
         copy.launch_configurations.update(self.launch_configurations)
         copy._globals = dict(self._globals)
@@ -222,7 +228,7 @@ class LaunchContext:
         copy._event_handlers = self._event_handlers
         return copy
 
-    # aliases with the private names in ROS, which users' entities and tests call
+    # users' entities and tests call these methods by their private names in ROS
     _push_locals = push_locals
     _pop_locals = pop_locals
     _push_launch_configurations = push_launch_configurations
@@ -234,7 +240,7 @@ class LaunchContext:
     # --- the running launch ---------------------------------------------------------------------------------
 
     def attach(self, session: RunningLaunch) -> EventQueue:
-        """Attach a running launch, and return the queue of events that it handles."""
+        """Attach a running launch, and return the queue of the events that the launch must handle."""
         self._session = session
         return self._event_queue
 
@@ -262,7 +268,7 @@ class LaunchContext:
 
     @property
     def descriptions(self) -> Descriptions | None:
-        """The robot descriptions of the running launch, or None."""
+        """The robot descriptions of the running launch, or None if no launch is running."""
         return None if self._session is None else self._session.descriptions
 
     def log(self, name: str, level: int, text: str) -> None:
@@ -288,7 +294,7 @@ class LaunchContext:
 
     @property
     def log_folder(self) -> Path:
-        """The folder of this launch's log."""
+        """The folder of the launch's log files."""
         if self._session is not None:
             return self._session.log.folder
         from linkwright.launch.log.loggers import launch_config
@@ -303,7 +309,7 @@ class LaunchContext:
             self._session.log.diagnostics([warning])
 
     def report_findings(self, about: object, findings: Sequence[Diagnostic]) -> None:
-        """Report findings about a robot description, both here and in the viewer."""
+        """Report findings about a robot description in the log and in the viewer."""
         if self._session is None:
             print_diagnostics(findings, sys.stderr)
         else:
@@ -319,7 +325,7 @@ class LaunchContext:
 
     @property
     def asyncio_loop(self) -> asyncio.AbstractEventLoop | None:
-        """The event loop on which the launch runs, or None."""
+        """The event loop on which the launch runs, or None if there is none."""
         return self._session.loop if self._session is not None and self._session.loop else self._loop
 
     def _set_asyncio_loop(self, loop: asyncio.AbstractEventLoop | None) -> None:
@@ -331,7 +337,12 @@ class LaunchContext:
             self._session.hold(completion_future)
 
     def register_event_handler(self, event_handler: Handler, append: bool = False) -> None:
-        """Register a handler for future events, before or after the handlers registered earlier."""
+        """Register a handler for future events.
+
+        Args:
+            event_handler: the handler.
+            append: whether the handler is called after the handlers registered earlier; otherwise before them.
+        """
         if append:
             self._event_handlers.append(event_handler)
         else:

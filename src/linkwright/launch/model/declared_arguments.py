@@ -19,9 +19,9 @@ def declared_arguments(
 ) -> list[DeclareLaunchArgument]:
     """Return the arguments that entities, their children and their includes declare.
 
-    Descriptions that are not yet known are not searched. The first declaration of a name counts. Declarations behind a
-    condition are marked by ``conditionally_included``. Declarations after a `ResetLaunchConfigurations` cannot be given
-    from outside and are omitted.
+    Descriptions that cannot be read before the launch are not searched. The first declaration of a name counts.
+    Declarations under a condition are marked by ``conditionally_included``. Declarations after a
+    `ResetLaunchConfigurations` cannot be given from outside and are omitted.
     """
     return list(_Declarations.by(entities, conditional=conditional_inclusion).arguments.values())
 
@@ -29,14 +29,14 @@ def declared_arguments(
 def undeclared_names(entities: Iterable[LaunchDescriptionEntity], names: Iterable[str]) -> list[str]:
     """Return the names that a description does not declare.
 
-    The result is empty if parts of the description are not yet known.
+    The result is empty if some included descriptions cannot be read before the launch.
     """
     found = _Declarations.by(entities)
     return [] if found.incomplete else [name for name in names if name not in found.names]
 
 
 class _TooDeepError(Exception):
-    """Raised when entities are nested more deeply than the search descends."""
+    """Raised when entities are nested more deeply than the limit of the search."""
 
 
 class _Declarations:
@@ -45,7 +45,7 @@ class _Declarations:
     Attributes:
         arguments: name -> declaration, for arguments that can be given from outside.
         names: all declared names, including names that an including file sets.
-        incomplete: whether an included file cannot be searched.
+        incomplete: whether some entities could not be searched.
     """
 
     def __init__(self) -> None:
@@ -99,7 +99,7 @@ class _Declarations:
                 self.incomplete |= entity.hides_entities()
             except LinkwrightError:
                 self.incomplete = True
-                continue  # the visit to the include will report that the file cannot be read
+                continue  # the launch reports this error when it visits the include
             self.collect(below, conditional=conditional, set_outside=inside, depth=depth + 1)
             for _, some in maybe:
                 self.collect(some, conditional=True, set_outside=inside, depth=depth + 1)

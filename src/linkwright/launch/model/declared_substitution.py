@@ -8,8 +8,8 @@ A class declares its tag ``$(tag ...)``, its form in listings and its arguments:
 
         def perform(self, context: LaunchContext) -> str: ...
 
-From this declaration follow its constructor, its properties, its parser for XML and YAML, and the check of the number
-of arguments.
+The constructor, the properties, the parser for XML and YAML, and the check of the number of arguments are generated
+from this declaration.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ else:
     def dataclass_transform(**_: Any) -> Callable[[C], C]:
         """Tell type checkers that the constructor is generated from the fields.
 
-        This has no effect at run time.
+        This decorator has no effect at run time.
         """
         return lambda decorated: decorated
 
@@ -46,8 +46,8 @@ class Texts:
     """An argument that consists of texts and substitutions to be joined.
 
     Args:
-        default: the default value.
-        kw_only: whether Python code must pass it as a keyword argument.
+        default: the default value; the argument is required if it is omitted.
+        kw_only: whether Python code must pass the argument by keyword.
         read: converts a value to a list of substitutions.
     """
 
@@ -79,11 +79,11 @@ class Texts:
         return texts
 
     def __set__(self, owner: Any, value: SomeSubstitutionsType | Path) -> None:
-        """Check, normalize and store a value."""
+        """Normalize a value to substitutions, and store it."""
         owner.__dict__[self.name] = self.read(value)
 
     def describe(self, value: Any) -> str:
-        """Return a value of the argument in the form of listings."""
+        """Return the form of a value in listings."""
         return describe(value)
 
 
@@ -91,16 +91,16 @@ class OptionalTexts(Texts):
     """A `Texts` argument that may be None."""
 
     if TYPE_CHECKING:
-        # The attribute of an instance may be None; mypy sees only that the method has a different type.
+        # Declared only for mypy: the value of an optional argument may be None.
         def __get__(self, owner: Any, kind: type | None = None) -> list[Substitution] | None:  # type: ignore[override]  # see above
             ...
 
     def __set__(self, owner: Any, value: SomeSubstitutionsType | Path | None) -> None:
-        """Check, normalize and store a value."""
+        """Normalize a value to substitutions, and store it; None is stored unchanged."""
         owner.__dict__[self.name] = None if value is None else self.read(value)
 
     def describe(self, value: Any) -> str:
-        """Return a value of the argument in the form of listings."""
+        """Return the form of a value in listings; empty for None."""
         return describe(value or [])
 
 
@@ -108,7 +108,7 @@ class AnyTexts(Texts):
     """A `Texts` argument that also accepts other values, which `read` converts."""
 
     def __set__(self, owner: Any, value: Any) -> None:
-        """Check, normalize and store a value."""
+        """Convert a value to substitutions, and store it."""
         owner.__dict__[self.name] = self.read(value)
 
 
@@ -116,7 +116,7 @@ class AnyOptionalTexts(OptionalTexts):
     """An `AnyTexts` argument that may be None."""
 
     def __set__(self, owner: Any, value: Any) -> None:
-        """Check, normalize and store a value."""
+        """Convert a value to substitutions, and store it; None is stored unchanged."""
         super().__set__(owner, value)
 
 
@@ -126,18 +126,18 @@ class TextLists(Texts):
     def __init__(self, *, default: Any = _REQUIRED, read: Callable[[Any], Any] = iter) -> None:
         super().__init__(default=default, read=lambda value: list(map(normalize_to_list_of_substitutions, read(value))))
 
-    # The values are lists of `Texts` values, but no code accesses both kinds through the type `Texts`.
+    # Declared only for mypy: the value is a list of lists. No code accesses it through the type `Texts`.
     if TYPE_CHECKING:
 
         def __get__(self, owner: Any, kind: type | None = None) -> list[list[Substitution]]:  # type: ignore[override]  # see above
             ...
 
     def __set__(self, owner: Any, value: Iterable[SomeSubstitutionsType]) -> None:  # type: ignore[override]  # see above
-        """Check, normalize and store a value."""
+        """Normalize each item of a value to substitutions, and store the list."""
         owner.__dict__[self.name] = self.read(value)
 
     def describe(self, value: Any) -> str:
-        """Return a value of the argument in the form of listings."""
+        """Return the form of a value in listings, with commas between the items."""
         return ", ".join(map(describe, value))
 
 
@@ -146,7 +146,8 @@ class DeclaredSubstitution(Substitution):
     """The base class of declared substitutions.
 
     Class arguments:
-        tag: the name in ``$(name ...)``; several names are separated by slashes; empty for use in Python code only.
+        tag: the name in ``$(name ...)``, or several names separated by slashes; empty if the substitution is available
+            in Python code only.
         shown: the form in listings, with the arguments in braces and the class as ``{kind}``; by default the class and
             all arguments.
     """
@@ -190,12 +191,12 @@ class DeclaredSubstitution(Substitution):
     def wrong_count(cls, expected: str, given: int) -> Exception:  # noqa: ARG003 - for classes that use it
         """Return the exception for a wrong number of arguments.
 
-        As in ROS, its class differs between substitutions.
+        As in ROS, the class of the exception depends on the substitution.
         """
         return TypeError(f"{cls._tag} substitution expects {expected}")
 
     def describe(self) -> str:
-        """Return a text with the class and the arguments."""
+        """Return the form of the substitution in listings."""
         texts = {argument.name: argument.describe(vars(self)[argument.name]) for argument in self._arguments}
         if self._shown is None:
             return f"{type(self).__name__}({', '.join(texts.values())})"
@@ -203,9 +204,9 @@ class DeclaredSubstitution(Substitution):
 
 
 def _constructor(cls: type[DeclaredSubstitution]) -> Callable[..., None]:
-    """Generate a constructor with the declared arguments.
+    """Generate a constructor whose parameters are the declared arguments.
 
-    It lets Python check them and editors know them.
+    An explicit signature lets Python check calls, and editors show the parameters.
     """
     names: dict[str, Any] = {}
     parameters = ["self"]

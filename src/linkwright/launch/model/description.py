@@ -22,7 +22,7 @@ class LaunchDescription(LaunchDescriptionEntity):
 
     Args:
         initial_entities: the entities.
-        deprecated_reason: why the description is deprecated, which is logged when it is visited.
+        deprecated_reason: the reason for a deprecation, which is logged when the description is visited.
     """
 
     def __init__(
@@ -36,7 +36,7 @@ class LaunchDescription(LaunchDescriptionEntity):
 
     @property
     def entities(self) -> list[LaunchDescriptionEntity]:
-        """The entities."""
+        """The entities of the description, in the order of their visits."""
         return self._entities
 
     @property
@@ -46,7 +46,7 @@ class LaunchDescription(LaunchDescriptionEntity):
 
     @property
     def deprecated_reason(self) -> str | None:
-        """Why the description is deprecated, or None."""
+        """The reason for the deprecation, or None if the description is not deprecated."""
         return self._deprecated_reason
 
     def describe(self) -> str:
@@ -55,7 +55,7 @@ class LaunchDescription(LaunchDescriptionEntity):
         return f"{type(self).__name__}({number} {'entity' if number == 1 else 'entities'})"
 
     def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
-        """Return the entities, for tools that inspect a description."""
+        """Return the entities of the description."""
         return self._entities
 
     def add_entity(self, entity: LaunchDescriptionEntity) -> None:
@@ -75,7 +75,7 @@ class LaunchDescription(LaunchDescriptionEntity):
         self._entities.append(_checked(action))
 
     def visit(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity]:
-        """Return the entities to visit next."""
+        """Return the entities to visit next, and log a warning if the description is deprecated."""
         if self.deprecated:
             file = context.get_locals_as_dict().get("current_launch_file_path")
             where = f"launch file [{file}] is" if file else "launch description is"
@@ -87,16 +87,19 @@ class LaunchDescription(LaunchDescriptionEntity):
     def get_launch_arguments(self, conditional_inclusion: bool = False) -> list[DeclareLaunchArgument]:
         """Return the arguments declared here and in included descriptions.
 
-        Descriptions that are not known before the launch are not searched. The first declaration of a name counts. A
-        declaration under a condition is marked by its ``conditionally_included``.
+        Descriptions that cannot be read before the launch are not searched. The first declaration of a name counts. A
+        declaration under a condition is marked by its attribute ``conditionally_included``.
         """
         return declared_arguments(self.entities, conditional_inclusion)
 
 
 def _checked(entity: Any) -> Any:
-    """Return an entity after checking that it can be visited.
+    """Check that an object can be visited, and return it.
 
-    ROS fails only when the launch runs, far from the location of the mistake.
+    ROS reports such a mistake only during the launch, without the line that added the object.
+
+    Raises:
+        AttributeError: LAUNCH147, the object is not an entity.
     """
     if isinstance(entity, LaunchDescriptionEntity) or hasattr(entity, "visit"):
         return entity

@@ -17,11 +17,11 @@ class LaunchDescriptionEntity(Placed):
     """An element of a launch description."""
 
     def visit(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity] | None:
-        """Visit the entity, and return the entities to visit next."""
+        """Visit the entity, and return the entities to visit next, or None."""
         return None
 
     def describe(self) -> str:
-        """Return a short text for listings."""
+        """Return a short text that describes the entity in listings."""
         return f"{type(self).__name__}()"
 
     def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
@@ -43,18 +43,19 @@ class LaunchDescriptionEntity(Placed):
         return ()
 
     def hides_entities(self) -> bool:
-        """Return whether some child entities are unknown before the launch.
-
-        The entities of a file are an example.
-        """
+        """Return whether some child entities are unknown before the launch, such as those of an included file."""
         return False
 
     def explain_inside(self, error: LinkwrightError) -> LinkwrightError:
-        """Return an error in a child entity with notes that explain how the child was reached."""
+        """Add notes on how a child entity was reached to an error in the child.
+
+        Returns:
+            The same error.
+        """
         return error
 
     def get_asyncio_future(self) -> asyncio.Future[Any] | None:
-        """Return a future that is done when the entity has ended, or None if it ends with its visit."""
+        """Return a future that is done when the entity has ended; None if the entity ends with its visit."""
         return None
 
 
@@ -65,10 +66,10 @@ SomeEntitiesType_types_tuple = (LaunchDescriptionEntity, Iterable)
 
 
 def as_entities(value: Any) -> list[LaunchDescriptionEntity]:
-    """Return a list of entities for a single entity, several entities, or None.
+    """Convert a single entity, several entities or None to a list of entities.
 
     Raises:
-        TypeError: the argument is or contains something that is not an entity.
+        TypeError: the argument is or contains an object that is not an entity.
     """
     if value is None:
         return []

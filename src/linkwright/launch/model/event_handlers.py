@@ -16,7 +16,9 @@ EntitiesOrCallable = SomeEntitiesType | Callable[..., Any] | None
 
 
 class BaseEventHandler:
-    """Reacts to the events that a matcher accepts; users derive from it and override `handle`.
+    """Reacts to the events that a matcher accepts.
+
+    Users derive from this class and override `handle`.
 
     Args:
         matcher: called with an event; returns whether the handler accepts the event.
@@ -34,17 +36,17 @@ class BaseEventHandler:
 
     @property
     def handler_description(self) -> str | None:
-        """A text that describes the reaction in listings."""
+        """A text that describes the reaction in listings, or None."""
         return None
 
     @property
     def matcher_description(self) -> str | None:
-        """A text that describes the accepted events in listings."""
+        """A text that describes the accepted events in listings, or None."""
         return None
 
     @property
     def entities(self) -> Any:
-        """The entities that the handler visits, as far as they are known."""
+        """The entities that the handler visits, if they are known before the event."""
         return None
 
     def matches(self, event: Any) -> bool:
@@ -52,7 +54,7 @@ class BaseEventHandler:
         return self._matcher(event)
 
     def describe(self) -> tuple[str, list[LaunchDescriptionEntity]]:
-        """Return a line for listings, and the entities that the handler visits."""
+        """Return a line for listings, and the entities that the handler visits, if they are known."""
         text = (
             f"{type(self).__name__}(matcher='{self.matcher_description}', handler='{self.handler_description}', "
             f"handle_once={self.handle_once})"
@@ -60,7 +62,10 @@ class BaseEventHandler:
         return text, list(_as_iterable(self.entities))
 
     def handle(self, event: Any, context: LaunchContext) -> Any:
-        """Set the event as a local of the context; subclasses return the entities to visit."""
+        """Set the event as a local of the context, and unregister a handler for a single event.
+
+        Subclasses return the entities to visit.
+        """
         context.extend_locals({"event": event})
         if self.handle_once:
             context.unregister_event_handler(self)
@@ -99,7 +104,7 @@ class _ReactingHandler(BaseEventHandler):
     Args:
         matcher: called with an event; returns whether the handler accepts the event.
         reaction: the entities, or a function of event and context that returns them.
-        name: the user's name for the reaction, for messages.
+        name: the name of the reaction's argument in the user's code, for messages.
         handle_once: whether the handler is unregistered after the first event.
 
     Raises:
@@ -114,7 +119,7 @@ class _ReactingHandler(BaseEventHandler):
 
     @property
     def entities(self) -> list[LaunchDescriptionEntity]:
-        """The entities to visit, as far as they are known."""
+        """The given entities to visit; empty if a function returns them."""
         return self._entities
 
     @property
@@ -134,8 +139,8 @@ class OnActionEventBase(_ReactingHandler):
     Args:
         action_matcher: the action, a predicate on actions, or None for all actions.
         on_event: the entities to visit, or a function of event and context that returns them.
-        target_event_cls: the class of the events.
-        target_action_cls: the class of the actions.
+        target_event_cls: the class of the accepted events.
+        target_action_cls: the class of the accepted actions.
         handle_once: whether the handler is unregistered after the first event.
     """
 
@@ -175,7 +180,11 @@ class OnActionEventBase(_ReactingHandler):
 
 
 def _reaction(given: Any, name: str) -> tuple[Callable[..., Any] | None, list[LaunchDescriptionEntity]]:
-    """Return the function and no entities, or None and the entities."""
+    """Return the function of a reaction, or None, and the given entities.
+
+    Raises:
+        TypeError: the reaction is neither a function nor entities.
+    """
     if callable(given) and not isinstance(given, LaunchDescriptionEntity):
         return given, []
     try:
@@ -191,10 +200,10 @@ def _as_iterable(entities: Any) -> Iterable[Any]:
 
 
 class OnExecutionComplete(OnActionEventBase):
-    """Reacts when an action has been executed, or when a process has ended.
+    """Reacts when an action has completed.
 
-    In general, an action that takes time must have ended. Without a target, it reacts to all actions except its own,
-    which would cause an endless loop.
+    An action that takes time, such as a process, has completed when it has ended. Without a target, the handler accepts
+    all actions except the actions that it returned itself, which would cause an endless loop.
     """
 
     def __init__(
@@ -228,7 +237,7 @@ class OnIncludeLaunchDescription(BaseEventHandler):
         super().__init__(matcher=lambda event: isinstance(event, events.IncludeLaunchDescription), **kwargs)
 
     def handle(self, event: Any, context: LaunchContext) -> Any:
-        """Return the included description, to be visited."""
+        """Return the launch description of the event, to be visited next."""
         super().handle(event, context)
         return event.launch_description
 

@@ -10,11 +10,11 @@ from linkwright.launch.errors.places import Place
 
 
 class ProcessAction(Protocol):
-    """An action that starts a process, or a node in the launcher's process.
+    """The interface of actions that start a process, or a node in the launcher's process.
 
     Attributes:
         place: the location of the action in the user's program.
-        process_details: ``name``, ``cmd``, ``cwd``, ``env`` and ``pid`` of the process once it is running.
+        process_details: ``name``, ``cmd``, ``cwd``, ``env`` and ``pid`` of the process; None before the start.
     """
 
     place: Place | None
@@ -24,20 +24,20 @@ class ProcessAction(Protocol):
         """Store output that the process wrote to stdout (1) or stderr (2)."""
 
     def exited(self, event: ProcessExited, context: Any) -> list[Any]:
-        """Return the entities to visit when the process has ended."""
+        """Record the exit status, and return the entities to visit next."""
 
 
 ProcessMatcher = Callable[[ProcessAction], bool]
 
 
 class Event:
-    """The base class of events, which report an occurrence or request an action."""
+    """The base class of events, which report that something happened or request an action."""
 
     name = "launch.Event"
 
 
 class IncludeLaunchDescription(Event):
-    """The request to visit a launch description."""
+    """A request to visit a launch description."""
 
     name = "launch.events.IncludeLaunchDescription"
 
@@ -46,7 +46,7 @@ class IncludeLaunchDescription(Event):
 
 
 class Shutdown(Event):
-    """The request to end the launch."""
+    """A request to end the launch."""
 
     name = "launch.events.Shutdown"
 
@@ -80,7 +80,7 @@ class RunningProcessEvent(Event):
     Attributes:
         action: the action that started the process.
         process_name: the name of the process in the log, such as ``talker-1``.
-        cmd: the words of the command.
+        cmd: the command as a list of arguments.
         cwd: the working directory; None for the launcher's.
         env: the environment; None for the launcher's.
         pid: the process ID.
@@ -107,7 +107,7 @@ class RunningProcessEvent(Event):
 
     @property
     def execute_process_action(self) -> ProcessAction:
-        """The action, under its former name."""
+        """The value of `action`, under its former name."""
         return self.action
 
 
@@ -136,7 +136,7 @@ class ProcessIO(RunningProcessEvent):
     """The event that a process wrote output.
 
     Args:
-        text: the bytes that it wrote.
+        text: the bytes that the process wrote.
         fd: 1 for stdout, 2 for stderr.
         details: see `RunningProcessEvent`.
     """
@@ -214,7 +214,7 @@ class SignalProcess(ProcessTargetedEvent):
 
     Attributes:
         signal: the signal.
-        signal_name: its name, such as ``SIGINT``.
+        signal_name: the name of the signal, such as ``SIGINT``.
     """
 
     name = "launch.events.process.SignalProcess"
@@ -244,7 +244,7 @@ def matches_name(name: str) -> ProcessMatcher:
 
 
 def matches_executable(executable: str) -> ProcessMatcher:
-    """Return a matcher that accepts processes by the last part of their program's path."""
+    """Return a matcher that accepts processes by the file name of their program."""
 
     def accepts(action: ProcessAction) -> bool:
         details = action.process_details

@@ -1,7 +1,4 @@
-"""Textual descriptions of launch descriptions.
-
-``ros2 launch --print-description`` prints them.
-"""
+"""Listings of launch descriptions, as ``ros2 launch --print-description`` prints them."""
 
 from __future__ import annotations
 
@@ -17,10 +14,10 @@ _INDENT = "    "
 
 
 class LaunchIntrospector:
-    """Describes the contents of a launch description without running it."""
+    """Formats the contents of a launch description without running it."""
 
     def format_launch_description(self, launch_description: LaunchDescription) -> str:
-        """Return the entities, one per line, with children indented."""
+        """Return the entities of a description as an indented tree, one per line."""
         return format_launch_description(launch_description)
 
 

@@ -18,7 +18,7 @@ FilePath = str | bytes | os.PathLike[Any]
 
 
 def isclassinstance(obj: object) -> bool:
-    """Return whether an object is an instance of a class, which in Python 3 is always true."""
+    """Return whether an object is an instance of a class, which is always true in Python 3."""
     return hasattr(obj, "__class__")
 
 
@@ -36,7 +36,7 @@ def ensure_argument_type(argument: Any, types: Any, argument_name: str, caller: 
     """Check that an argument has a type, or one of several types.
 
     Raises:
-        TypeError: it does not.
+        TypeError: the argument has another type, or `types` is not valid.
     """
     allowed = [types] if inspect.isclass(types) else types
     listed: list[Any] = list(allowed) if isinstance(allowed, Iterable) and not isinstance(allowed, str) else [None]
@@ -55,12 +55,12 @@ def ensure_argument_type(argument: Any, types: Any, argument_name: str, caller: 
 
 
 def create_future(loop: asyncio.AbstractEventLoop | None) -> asyncio.Future[Any]:
-    """Create a future for an event loop, by default the running one."""
+    """Create a future for an event loop, by default the loop that `get_loop` returns."""
     return (loop or get_loop()).create_future()
 
 
 def get_loop() -> asyncio.AbstractEventLoop:
-    """Return the running event loop, else the one that an earlier call created, else a new one."""
+    """Return the running event loop, else the open loop from an earlier call, else a new loop."""
     try:
         return asyncio.get_running_loop()
     except RuntimeError:
@@ -77,9 +77,9 @@ _loops: list[asyncio.AbstractEventLoop] = []
 def visit_all_entities_and_collect_futures(
     entity: LaunchDescriptionEntity, context: LaunchContext
 ) -> list[tuple[LaunchDescriptionEntity, asyncio.Future[Any]]]:
-    """Visit an entity and its descendants, and return their futures.
+    """Visit an entity and its descendants, and return the entities with a future and their futures.
 
-    An entity has a future if it outlasts its visit.
+    An entity has a future if it continues after its visit.
     """
     following = entity.visit(context)
     future = entity.get_asyncio_future()

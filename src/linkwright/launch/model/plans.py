@@ -1,6 +1,6 @@
-"""Plans of processes, which actions create.
+"""The plans of processes, which actions create and the engine carries out.
 
-Plans of our own nodes are `linkwright.hosting.plans.HostedPlan`.
+`linkwright.hosting.plans.HostedPlan` is the plan of one of Linkwright's own nodes.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from linkwright.launch.model.events import ProcessAction
 
 @dataclass(frozen=True)
 class ProcessPlan:
-    """A process to start; `ExecuteLocal` describes the fields."""
+    """The evaluated options of a process to start; see `ExecuteLocal`."""
 
     action: ProcessAction
     name: str

@@ -13,7 +13,11 @@ from linkwright.launch.model.event_handlers import EntitiesOrCallable, OnActionE
 
 
 def _check_target(target_action: Any, handler: str) -> None:
-    """Check that a target can be a process, and raise TypeError otherwise."""
+    """Check that the target of a handler is a process action, a function or None.
+
+    Raises:
+        TypeError: the target is another object.
+    """
     if target_action is None or isinstance(target_action, ExecuteLocal):
         return
     if isinstance(target_action, LaunchDescriptionEntity) or not callable(target_action):
@@ -22,7 +26,7 @@ def _check_target(target_action: Any, handler: str) -> None:
 
 
 class _OnProcessEvent(OnActionEventBase):
-    """A handler for events of processes."""
+    """The base class of handlers for events of processes."""
 
     def __init__(
         self,

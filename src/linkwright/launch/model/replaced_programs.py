@@ -1,8 +1,7 @@
-"""Programs that Linkwright's nodes replace if they are not installed.
+"""Programs that Linkwright's nodes replace if the programs are not installed.
 
-Launch files start such programs as processes. The replacements are found through the entry points
-``linkwright.replaced_programs``, whose names are the names of the programs. Each entry point refers to a
-`CommandParser`.
+Launch files start such programs as processes. The replacements are registered as entry points in the group
+``linkwright.replaced_programs``, by the name of the program. Each entry point refers to a `CommandParser`.
 """
 
 from __future__ import annotations
@@ -23,18 +22,19 @@ _INTERPRETERS = ("ruby",)
 
 
 def replaced_programs() -> Mapping[str, EntryPoint]:
-    """Return the command line parsers of the replaced programs, by program name."""
+    """Return the entry points of the replaced programs' command-line parsers, by program name."""
     return extensions("linkwright.replaced_programs")
 
 
 def replacing_node(words: Sequence[str], environment: Mapping[str, str]) -> NodeCommand | None:
-    """Return the node that replaces a command, or None.
-
-    There is none if the program is installed.
+    """Return the node that replaces a command.
 
     Args:
-        words: the words of the command line.
+        words: the program and its arguments.
         environment: the environment whose ``PATH`` is searched.
+
+    Returns:
+        The node; None if the program is installed or has no replacement.
 
     Raises:
         LinkwrightError: NODE002, the package that provides the node cannot be imported.

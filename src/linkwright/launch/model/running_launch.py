@@ -1,4 +1,7 @@
-"""The interface through which actions use the running launch; the engine implements it."""
+"""The interface of the running launch for actions.
+
+The engine (`linkwright.launch.engine`) implements this interface.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class Scheduled(Protocol):
-    """A scheduled call."""
+    """The interface of a scheduled call."""
 
     def cancel(self) -> None:
         """Cancel the call."""
@@ -30,7 +33,7 @@ Schedule = Callable[[float, Callable[[], None]], Scheduled]
 
 
 class NodeHosting(Protocol):
-    """Runs nodes in the launcher's own process."""
+    """The interface of the object that runs nodes in the launcher's own process."""
 
     @property
     def graph(self) -> Graph:
@@ -38,13 +41,16 @@ class NodeHosting(Protocol):
 
     @property
     def launcher_node(self) -> Node:
-        """The launcher's own node for services and topics, created on first use."""
+        """The launcher's own node for services and topics, which is created on first use."""
 
     def plan(self, plan: HostedPlan) -> None:
-        """Schedule the start of a node; has no effect once the launch is ending."""
+        """Schedule the start of a node.
+
+        This method has no effect once the launch is ending.
+        """
 
     def use_simulated_time(self, value: bool) -> None:
-        """Switch the launcher's own node between ``/clock`` and wall time."""
+        """Set whether the launcher's own node follows ``/clock`` or wall time."""
 
 
 class RunningLaunch(Protocol):
@@ -64,7 +70,7 @@ class RunningLaunch(Protocol):
 
     @property
     def left_out(self) -> set[str]:
-        """The names, without namespaces, of nodes that were skipped because they are not available."""
+        """The names, without namespaces, of the nodes that were skipped because their software is not available."""
 
     @property
     def host(self) -> NodeHosting:
@@ -72,7 +78,7 @@ class RunningLaunch(Protocol):
 
     @property
     def loop(self) -> asyncio.AbstractEventLoop | None:
-        """The event loop while it runs, else None."""
+        """The event loop, or None if the launch is not running."""
 
     @property
     def ending(self) -> bool:
@@ -84,13 +90,16 @@ class RunningLaunch(Protocol):
 
     @property
     def scratch_folder(self) -> Path:
-        """A folder for files that the processes of this launch read; it is deleted after the launch."""
+        """A folder for files that the processes of this launch read.
+
+        The folder is deleted after the launch.
+        """
 
     def number_process(self, base_name: str) -> str:
-        """Return a process's log name, which is the program's name followed by the next number."""
+        """Return the log name of a process, which is its base name and the next number."""
 
     def start_process(self, plan: ProcessPlan, name: str) -> None:
-        """Start a process, monitor it until it ends, and respawn it if its plan requests that."""
+        """Start a process, monitor it until it ends, and respawn it if the plan requests a respawn."""
 
     def call_later(
         self,
@@ -101,19 +110,25 @@ class RunningLaunch(Protocol):
         cancel_on_shutdown: bool = True,
         schedule: Schedule | None = None,
     ) -> Callable[[], None]:
-        """Schedule an event and a visit to entities, and return a function that cancels them."""
+        """Schedule an event and a visit to entities after a delay in seconds.
+
+        Return a function that cancels them.
+        """
 
     def hold(self, future: asyncio.Future[Any]) -> None:
         """Keep the launch running until an entity's future is done."""
 
     def spawn(self, work: Coroutine[Any, Any, None]) -> None:
-        """Run a coroutine in the background; the launch waits for it to finish."""
+        """Run a coroutine in the background.
+
+        The launch does not become idle until the coroutine has finished.
+        """
 
     def could_not_start(self, what: object, error: LinkwrightError) -> None:
         """Report why a process or node could not be started; the launch continues without it."""
 
     def fail(self, what: object) -> None:
-        """Record a failure, after which the launch exits with status 1."""
+        """Record a failure; the launch exits with status 1 unless the failure is cleared."""
 
     def report(self, about: object, findings: Sequence[Diagnostic]) -> None:
-        """Report findings about a robot description, both here and in the viewer."""
+        """Report findings about a robot description in the log and in the viewer."""

@@ -1,4 +1,4 @@
-"""Substitutions, which are texts that are known only when the launch runs."""
+"""Substitutions, which evaluate to text when the launch runs."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ class Substitution(Placed):
         return f"<{_public_name(type(self))} {self.describe()}>"
 
     def describe(self) -> str:
-        """Return a short form for listings, as ``ros2 launch --show-args`` prints it."""
+        """Return the form of the substitution in listings such as ``ros2 launch --show-args``."""
         return f"{type(self).__name__}()"
 
     def perform(self, context: LaunchContext) -> str:
-        """Return the text in a launch context."""
+        """Evaluate the substitution in a launch context, and return the resulting text."""
         raise NotImplementedError(f"{type(self).__name__} does not define perform()")
 
 
@@ -51,7 +51,9 @@ SomeSubstitutionsType_types_tuple = (str, Substitution, Iterable)
 
 
 def normalize_to_list_of_substitutions(value: Any) -> list[Substitution]:
-    """Return a value of `SomeSubstitutionsType` as a list of substitutions; paths count as text.
+    """Convert a value of `SomeSubstitutionsType` to a list of substitutions.
+
+    A path is converted to its text.
 
     Raises:
         TypeError: the value has another type.
@@ -66,12 +68,12 @@ def normalize_to_list_of_substitutions(value: Any) -> list[Substitution]:
 
 
 def perform_substitutions(context: LaunchContext, substitutions: Iterable[Substitution]) -> str:
-    """Evaluate substitutions, and return their texts joined."""
+    """Evaluate substitutions, and return the concatenated texts."""
     return "".join(context.perform_substitution(substitution) for substitution in substitutions)
 
 
 def describe(substitutions: Iterable[Substitution]) -> str:
-    """Return a text that shows substitutions in the form of listings."""
+    """Return the form of substitutions in listings."""
     return " + ".join(substitution.describe() for substitution in substitutions)
 
 
@@ -84,7 +86,10 @@ def _single(value: Any) -> Substitution:
 
 
 def _public_name(kind: type) -> str:
-    """Return the name under which users import a class; our classes appear under ``launch``."""
+    """Return the full name under which users import a class.
+
+    Linkwright's own classes have the names in ``launch.substitutions``.
+    """
     if not kind.__module__.startswith("linkwright."):
         return f"{kind.__module__}.{kind.__qualname__}"
     module = "".join("_" + letter.lower() if letter.isupper() else letter for letter in kind.__name__).lstrip("_")

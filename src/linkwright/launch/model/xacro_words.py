@@ -1,4 +1,4 @@
-"""Parsing of the command line of xacro in launch files."""
+"""Parser for command lines of xacro in launch files."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ def parse_xacro_words(words: Sequence[str], text: str, folder: Path) -> tuple[Xa
 
     Args:
         words: the arguments of ``xacro``.
-        text: the arguments as written, before they were split into words.
+        text: the arguments as written, before they were split.
         folder: the folder for relative paths.
 
     Returns:
         The parsed arguments, and a remark for the user or None.
 
     Raises:
-        LinkwrightError: LAUNCH128, xacro does not produce a text with these arguments.
+        LinkwrightError: LAUNCH128, the arguments do not name exactly one model file, or an option is not supported.
     """
     files: list[str] = []
     arguments: dict[str, str] = {}

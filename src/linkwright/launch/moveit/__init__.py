@@ -1,7 +1,8 @@
 """The modules ``launch_param_builder`` and ``moveit_configs_utils`` for MoveIt launch files.
 
-Both collect parameters from the files of a package. They allow such packages to be launched here, with their
-``robot_state_publisher`` and viewer. MoveIt's own programs are compiled and are not part of Linkwright.
+Both modules collect parameters from the files of a package. With them, Linkwright can launch the
+``robot_state_publisher`` and the viewer of such a package. MoveIt's own programs are compiled and are not part of
+Linkwright.
 """
 
 from linkwright.launch.moveit.builder import MoveItConfigsBuilder, ParameterBuilder

@@ -34,10 +34,10 @@ _Path = str | Path | None
 class ParameterBuilder:
     """Collects parameters.
 
-    Every method except the last returns the builder, so that calls can be chained.
+    Every method except `to_dict` returns the builder, so that calls can be chained.
 
     Args:
-        package_name: the package to which relative paths refer.
+        package_name: the package that contains the files; relative paths refer to its share folder.
 
     Raises:
         PackageNotFoundError: PKG101, there is no such package.
@@ -67,7 +67,7 @@ class ParameterBuilder:
     def xacro_parameter(
         self, parameter_name: str, file_path: str | Path, mappings: Mapping[str, Any] | None = None
     ) -> Self:
-        """Add a parameter with the expanded text of a model file."""
+        """Add a parameter with the expanded text of a xacro or URDF file."""
         self._parameters[parameter_name] = load_xacro(self._package_path / file_path, mappings)
         return self
 
@@ -82,9 +82,9 @@ class ParameterBuilder:
 
 
 class MoveItConfigsBuilder(ParameterBuilder):
-    """Reads the files of a configuration package.
+    """Reads the files of a MoveIt configuration package.
 
-    Each is read from its usual place or from a given path.
+    Each file is read from a given path, or from its usual path in the package.
 
     Args:
         robot_name: the name of the robot.
@@ -107,7 +107,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
     def robot_description(self, file_path: _Path = None, mappings: _Mappings = None) -> MoveItConfigsBuilder:
         """Read the URDF, or warn if its file is missing.
 
-        Without the file, nodes use ``/robot_description``.
+        Without this parameter, nodes read the URDF from the topic ``/robot_description``.
         """
         path = self.__urdf if file_path is None else self._package_path / file_path
         try:
@@ -145,16 +145,19 @@ class MoveItConfigsBuilder(ParameterBuilder):
         return self
 
     def cartesian_limits(self, file_path: _Path = None) -> MoveItConfigsBuilder:
-        """Read Cartesian limits under the former name of `pilz_cartesian_limits`."""
+        """Read Cartesian limits for the Pilz planner from ``cartesian_limits.yaml``.
+
+        This is the former name of `pilz_cartesian_limits`.
+        """
         return self.pilz_cartesian_limits(file_path or _FOLDER / "cartesian_limits.yaml")
 
     def trajectory_execution(
         self, file_path: _Path = None, moveit_manage_controllers: bool = True
     ) -> MoveItConfigsBuilder:
-        """Read the controllers that execute trajectories.
+        """Read the configuration of the controllers that execute trajectories.
 
         Raises:
-            RuntimeError: LAUNCH154, there are several such files, and none has the usual name.
+            RuntimeError: LAUNCH154, there are several such files, and none has a usual name.
         """
         made: Parameters = {"moveit_manage_controllers": moveit_manage_controllers}
         path = self._package_path / file_path if file_path is not None else self.__controllers()
@@ -184,7 +187,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
         return self
 
     def sensors_3d(self, file_path: _Path = None) -> MoveItConfigsBuilder:
-        """Read the 3D sensors whose data forms the occupancy map, if the package configures any."""
+        """Read the 3D sensors whose data forms the occupancy map, if the package configures such sensors."""
         path = self.__file(file_path, "sensors_3d.yaml")
         content = load_yaml(path) if path.exists() else None
         if content and any(content.get("sensors") or ()):
@@ -202,8 +205,9 @@ class MoveItConfigsBuilder(ParameterBuilder):
         Args:
             default_planning_pipeline: the pipeline to use by default.
             pipelines: the names of the pipelines; by default all pipelines for which the package has a file.
-            load_all: whether the default includes the pipelines for which MoveIt itself has files, if it is in the
-                workspace.
+            load_all: whether the default also includes the pipelines for which MoveIt's package
+                ``moveit_configs_utils`` has
+                files, if this package is found.
 
         Raises:
             RuntimeError: LAUNCH154, the default is not one of the pipelines.
@@ -232,9 +236,9 @@ class MoveItConfigsBuilder(ParameterBuilder):
         return self
 
     def to_moveit_configs(self) -> MoveItConfigs:
-        """Return all parameters.
+        """Return all parameters, after reading the files that were not read before.
 
-        Parameters that were not read before are read from their usual place, if the files exist.
+        Optional files that do not exist are skipped.
         """
         configs = self.__moveit_configs
         if not configs.robot_description:
@@ -261,7 +265,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
     def to_dict(self, include_moveit_configs: bool = True) -> Parameters:
         """Return the parameters that were added one by one.
 
-        By default, the result of `to_moveit_configs` is included.
+        By default, the parameters of `to_moveit_configs` are included.
         """
         if include_moveit_configs:
             self._parameters.update(self.to_moveit_configs().to_dict())
@@ -278,7 +282,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
     def __models(self) -> tuple[Path, Path]:
         """Return the paths of the URDF and SRDF.
 
-        They come from the Setup Assistant's file, or else are named after the robot.
+        The paths are those in the Setup Assistant's file, or else are derived from the robot's name.
         """
         settings = self._package_path / ".setup_assistant"
         noted = (load_yaml(settings) or {}).get("moveit_setup_assistant_config", {}) if settings.exists() else {}
@@ -319,9 +323,9 @@ def _warn_without_model(error: LookupError) -> None:
 
 
 def _model(path: Path, mappings: _Mappings) -> Any:
-    """Return the text of a model.
+    """Return the expanded text of a model.
 
-    It is a substitution if the model's arguments contain substitutions.
+    If the model's arguments contain substitutions, return a parameter value that is expanded during the launch.
     """
     if all(isinstance(word, str) for pair in (mappings or {}).items() for word in pair):
         return load_xacro(path, mappings)
@@ -331,7 +335,7 @@ def _model(path: Path, mappings: _Mappings) -> Any:
 
 
 def _stems(folders: Sequence[Path], ending: str) -> list[str]:
-    """Return the parts of file names in folders before a suffix, without duplicates."""
+    """Return the names of the files in folders that have a suffix, without the suffix and duplicates."""
     found = (path.name.removesuffix(ending) for folder in folders for path in sorted(folder.glob(f"*{ending}")))
     return list(dict.fromkeys(found))
 

@@ -11,21 +11,21 @@ Parameters = dict[str, Any]
 
 @dataclass
 class MoveItConfigs:
-    """Parameters grouped by subject, each a dictionary for a node's ``parameters``.
+    """The parameters grouped by subject, each group a dictionary for a node's ``parameters``.
 
     Attributes:
-        package_path: share folder of the configuration package.
+        package_path: the share folder of the configuration package.
         robot_description: the URDF.
         robot_description_semantic: the SRDF.
-        robot_description_kinematics: inverse kinematics solvers.
-        planning_pipelines: planners.
-        trajectory_execution: controllers and the execution of trajectories.
+        robot_description_kinematics: the inverse kinematics solvers.
+        planning_pipelines: the planners.
+        trajectory_execution: the controllers and the execution of trajectories.
         planning_scene_monitor: the published parts of the planning scene.
         sensors_3d: the sensors whose data forms the occupancy map.
         move_group_capabilities: additional capabilities of move_group.
-        joint_limits: limits that replace the limits in the URDF.
-        moveit_cpp: parameters of MoveItCpp.
-        pilz_cartesian_limits: limits for the Pilz planner.
+        joint_limits: the limits that replace the limits in the URDF.
+        moveit_cpp: the parameters of MoveItCpp.
+        pilz_cartesian_limits: the limits for the Pilz planner.
     """
 
     package_path: Path | None = None
@@ -49,7 +49,7 @@ class MoveItConfigs:
         return self.pilz_cartesian_limits
 
     def to_dict(self) -> Parameters:
-        """Return all parameters in one dictionary."""
+        """Return the parameters of all groups, except `move_group_capabilities`, in one dictionary."""
         made: Parameters = {}
         for group in (
             self.robot_description,
@@ -64,6 +64,6 @@ class MoveItConfigs:
         ):
             made.update(group)
         for name, limits in self.pilz_cartesian_limits.items():
-            # Merge the values, because the Cartesian limits and the joint limits use the same parameter name.
+            # Merge the values, because the Cartesian limits and the joint limits have the same parameter name.
             made[name] = {**(made.get(name) or {}), **(limits or {})}
         return made

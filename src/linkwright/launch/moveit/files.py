@@ -1,6 +1,6 @@
-"""Files of a MoveIt configuration: text, YAML, xacro (``launch_param_builder.utils``).
+"""Readers for the files of a MoveIt configuration (``launch_param_builder.utils``).
 
-There is also a substitution for xacro.
+The files are text, YAML or xacro. There is also a substitution for xacro.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ def load_yaml(file_path: str | Path, mappings: Mapping[str, Any] | None = None) 
 
 
 def load_xacro(file_path: str | Path, mappings: Mapping[str, Any] | None = None) -> str:
-    """Return the expanded text of a model file.
+    """Return the expanded text of a xacro or URDF file.
 
     Raises:
         ParameterBuilderFileNotFoundError: LAUNCH153, the file does not exist.
@@ -128,7 +128,7 @@ def _rendered(text: str, path: Path, mappings: Mapping[str, Any]) -> str:
 
 @expose_substitution("xacro")
 class Xacro(Substitution):
-    """The expanded text of a model file.
+    """The expanded text of a xacro or URDF file.
 
     Args:
         file_path: the path of the file.
@@ -150,7 +150,7 @@ class Xacro(Substitution):
         """Return the class and its keyword arguments for a path.
 
         Raises:
-            TypeError: there are more arguments than a path.
+            TypeError: there is not exactly one argument.
         """
         if len(data) != 1:
             raise TypeError("xacro substitution expects one argument, the path; use $(command 'xacro ...') for more")

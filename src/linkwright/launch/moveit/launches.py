@@ -1,6 +1,6 @@
-"""The launch files of a MoveIt configuration package.
+"""The launch descriptions of a MoveIt configuration package.
 
-They are ``moveit_configs_utils.launches`` and ``launch_utils``.
+They replace ``moveit_configs_utils.launches`` and ``moveit_configs_utils.launch_utils``.
 """
 
 from __future__ import annotations
@@ -166,8 +166,8 @@ def generate_demo_launch(moveit_config: MoveItConfigs, launch_package_path: Path
 
     Args:
         moveit_config: the parameters.
-        launch_package_path: share folder of the package whose launch files are included; by default the package of the
-            parameters.
+        launch_package_path: the share folder of the package whose launch files are included; by default the package of
+            the parameters.
     """
     folder = Path(launch_package_path or _folder(moveit_config)) / "launch"
 
@@ -210,9 +210,9 @@ def _path(configs: MoveItConfigs, file: str) -> str:
 
 
 def _virtual_joints(text: Any) -> Iterator[tuple[str, str]]:
-    """Return the parent frames and child links of the virtual joints in an SRDF.
+    """Yield the parent frame and child link of each virtual joint in an SRDF.
 
-    The result is empty for an SRDF that needs a launch context.
+    An SRDF that is evaluated during the launch yields none.
     """
     if not isinstance(text, str):
         return
@@ -243,15 +243,15 @@ def add_debuggable_node(
     extra_debug_args: list[Any] | None = None,
     **kwargs: Any,
 ) -> None:
-    """Add a node that runs in gdb if an argument requests it.
+    """Add a node that runs in gdb if a launch argument is true.
 
     Args:
         ld: the launch description to extend.
         package: the node's package.
         executable: the node's executable.
-        condition_name: the argument that selects gdb.
-        commands_file: commands for gdb.
-        extra_debug_args: further arguments for the node in gdb.
+        condition_name: the launch argument that selects gdb.
+        commands_file: the file with commands for gdb.
+        extra_debug_args: further arguments for the node in gdb, if the node has ``arguments``.
         kwargs: see `Node`.
     """
     debug = LaunchConfiguration(condition_name)

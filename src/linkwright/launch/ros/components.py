@@ -41,7 +41,7 @@ class ComposableNode(Placed):
 
     Args:
         package: the package of the node's library.
-        plugin: the name of the node's class there, such as ``composition::Talker``.
+        plugin: the name of the node's class in the library, such as ``composition::Talker``.
         name: the name to give to the node.
         namespace: the namespace of the node, inside the namespaces of `PushRosNamespace` unless it starts with a slash.
         parameters: the parameters, as for a `Node`.
@@ -73,7 +73,7 @@ class ComposableNode(Placed):
 
     @classmethod
     def parse(cls, parser: Parser, entity: Entity) -> tuple[type[ComposableNode], dict[str, Any]]:
-        """Read the tag ``composable_node``.
+        """Return the class and keyword arguments for the tag ``composable_node``.
 
         Raises:
             RuntimeError: LAUNCH118, the tag has both ``if`` and ``unless``.
@@ -106,12 +106,12 @@ class ComposableNode(Placed):
 
     @property
     def node_name(self) -> Any:
-        """The node's name, as substitutions; None to keep the name in its code."""
+        """The node's name, as substitutions; None if the node's own code sets the name."""
         return self.__node_name
 
     @property
     def node_namespace(self) -> list[Substitution] | None:
-        """The node's namespace, as substitutions."""
+        """The node's namespace, as substitutions, or None."""
         return self.__node_namespace
 
     @property
@@ -121,7 +121,7 @@ class ComposableNode(Placed):
 
     @property
     def remappings(self) -> list[RemapRule] | None:
-        """The node's remappings, as tuples of substitutions."""
+        """The node's remapping rules, as pairs of tuples of substitutions, or None."""
         return self.__remappings
 
     @property
@@ -156,7 +156,7 @@ class ComposableLifecycleNode(ComposableNode):
 
     @property
     def node_name(self) -> Any:
-        """The node's name as substitutions, or its full name once it is loaded."""
+        """The node's name as substitutions, or its full name after the node was loaded."""
         return super().node_name if self.__full_name is None else self.__full_name
 
     def record_full_name(self, full_name: str) -> None:
@@ -165,9 +165,7 @@ class ComposableLifecycleNode(ComposableNode):
 
 
 def get_composable_node_load_request(description: ComposableNode, context: LaunchContext) -> Any:
-    """Return the request to load a node into a container.
-
-    The result is None if the node's condition does not hold.
+    """Return the request to load a node into a container, or None if the node's condition does not hold.
 
     Raises:
         LinkwrightError: the errors in the node's parameters.
@@ -212,7 +210,7 @@ def to_parameters_list(
 ) -> list[Any]:
     """Return evaluated parameters as ``rclpy.parameter.Parameter`` objects.
 
-    Files are read for the node's full name.
+    The values in parameter files are selected by the node's full name.
     """
     full_name = f"{(namespace or '').rstrip('/')}/{node_name.lstrip('/')}"
     full_name = full_name if full_name.startswith("/") else f"/{full_name}"
@@ -241,9 +239,9 @@ def _parameters(context: LaunchContext, full_name: str, sources: Iterable[Any]) 
 
 
 def _file_values(source: FileSource, context: LaunchContext, full_name: str) -> dict[str, Any]:
-    """Return a file's values for a node.
+    """Return the values in a parameter file for a node.
 
-    As in launch_ros, values under its own name override patterns.
+    As in launch_ros, values under the node's full name override values under patterns.
     """
     try:
         rules = source.file.rules(context)

@@ -38,7 +38,7 @@ _CONFIGURE, _ACTIVATE = 1, 3
 
 @expose_action("load_composable_node")
 class LoadComposableNodes(Action):
-    """Loads nodes into a container, one after another, once the container is available.
+    """Loads nodes into a container, one after another, as soon as the container is available.
 
     Args:
         composable_node_descriptions: the nodes to load.
@@ -67,14 +67,14 @@ class LoadComposableNodes(Action):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Read ``target`` and the nodes inside."""
+        """Read the attribute ``target`` and the ``composable_node`` tags inside."""
         _, kwargs = super().parse(entity, parser)
         kwargs["target_container"] = parser.parse_substitution(entity.get_attr("target", data_type=str))
         kwargs["composable_node_descriptions"] = _described(entity, parser)
         return cls, kwargs
 
     def execute(self, context: LaunchContext) -> None:
-        """Start loading the nodes.
+        """Start to load the nodes in the background.
 
         Raises:
             LinkwrightError: the errors in the nodes' parameters.
@@ -168,13 +168,13 @@ class ComposableNodeContainer(Node):
     def parse(
         cls, entity: Entity, parser: Parser, ignore: Sequence[str] | None = None
     ) -> tuple[type[Action], dict[str, Any]]:
-        """Read the attributes of a node's tag, and the nodes inside."""
+        """Read the attributes of a node's tag, and the ``composable_node`` tags inside."""
         _, kwargs = super().parse(entity, parser, ignore)
         kwargs["composable_node_descriptions"] = _described(entity, parser, optional=True)
         return cls, kwargs
 
     def execute(self, context: LaunchContext) -> list[Any] | None:
-        """Start the container, and load the nodes when it has started.
+        """Start the container, and return the action that loads the nodes, to be visited next.
 
         Raises:
             LinkwrightError: see `Node.execute`.
@@ -186,7 +186,7 @@ class ComposableNodeContainer(Node):
             if (condition := description.condition()) is None or condition.evaluate(context)
         ]
         if valid:
-            # Create the requests now, because the current scope applies to the loaded nodes, too.
+            # Let the container's own scope apply to the nodes: the action is visited right after the container.
             load = LoadComposableNodes(composable_node_descriptions=valid, target_container=self)
             load.place = self.place
             loading = [load]
@@ -196,7 +196,7 @@ class ComposableNodeContainer(Node):
     def _may_be_hosted(self, context: LaunchContext, package: str | None, executable: str) -> bool:
         """Return whether the container can run in the launcher's process.
 
-        It cannot if it loads third-party components.
+        A container with third-party components cannot, if its program is installed.
         """
         return super()._may_be_hosted(context, package, executable) and self._real_container(context) is None
 
@@ -224,9 +224,9 @@ class ComposableNodeContainer(Node):
 
 
 def _is_third_party(finder: PackageFinder, package: str, plugin: str) -> bool:
-    """Return whether a component is third-party and not built here.
+    """Return whether a component is from third-party software that is not built here.
 
-    A misspelt component of ours is not third-party.
+    The result is False for a misspelt name of one of Linkwright's components.
     """
     from linkwright.nodes.options import COMPONENTS
 
@@ -247,7 +247,10 @@ def _described(entity: Entity, parser: Parser, *, optional: bool = False) -> lis
 
 
 def _monitor_lifecycle_node(context: LaunchContext, description: ComposableLifecycleNode, full_name: str) -> None:
-    """Monitor the state of a loaded lifecycle node, and activate the node if ``autostart`` requests it."""
+    """Monitor the state of a loaded lifecycle node.
+
+    If ``autostart`` requests it, the node is also configured and activated.
+    """
     description.record_full_name(full_name)
     LifecycleEventManager(description).setup_lifecycle_manager(context)
     if not autostarts(context, description.node_autostart):

@@ -21,7 +21,8 @@ def generate_controllers_spawner_launch_description(
 ) -> LaunchDescription:
     """Return a launch description that spawns controllers.
 
-    It declares arguments for the name of the controller manager and for unloading the controllers at the end.
+    The description declares arguments for the name of the controller manager, and for whether the controllers are
+    unloaded at the end.
 
     Args:
         controller_names: the names of the controllers.
@@ -50,9 +51,11 @@ def generate_controllers_spawner_launch_description(
 def generate_controllers_spawner_launch_description_from_dict(
     controller_info_dict: Mapping[str, Any], extra_spawner_args: Sequence[Any] = ()
 ) -> LaunchDescription:
-    """Return a launch description that spawns controllers, given as a mapping.
+    """Return a launch description that spawns the controllers in a mapping.
 
-    The mapping is controller -> its parameter file, a list of files, or None.
+    Args:
+        controller_info_dict: controller -> its parameter file, a list of parameter files, or None.
+        extra_spawner_args: further arguments of the spawner.
 
     Raises:
         ValueError: the argument is not a mapping, or a file has another type.
@@ -73,7 +76,9 @@ def generate_load_controller_launch_description(
     controller_params_file: Any = None,
     extra_spawner_args: Sequence[Any] = (),
 ) -> LaunchDescription:
-    """Return a launch description that spawns one controller, with the order of arguments of Humble.
+    """Return a launch description that spawns one controller.
+
+    The order of the arguments is that of Humble.
 
     Args:
         controller_name: the name of the controller.

@@ -1,7 +1,7 @@
-"""Keyword arguments under their names up to ROS 2 Foxy.
+"""Support for the names that keyword arguments had up to ROS 2 Foxy.
 
-An example is ``node_executable`` for ``executable``. Launch files from that time are still in use, and nothing else in
-them is outdated.
+An example is ``node_executable`` for ``executable``. Launch files from that time are still in use, and their other
+contents are still valid.
 """
 
 from __future__ import annotations
@@ -15,7 +15,9 @@ _Class = TypeVar("_Class", bound=type)
 
 
 def with_deprecated_arguments(**present: str) -> Callable[[_Class], _Class]:
-    """Make a class accept former names of keyword arguments, with a warning that gives the current names.
+    """Make a class accept former names of keyword arguments.
+
+    Their use causes a warning that gives the current names.
 
     Args:
         present: former name -> current name.

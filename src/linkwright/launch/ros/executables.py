@@ -1,4 +1,4 @@
-"""Executables of packages: Linkwright's own, installed ones, and those in sources."""
+"""Executables of packages: Linkwright's own, installed executables, and executables in sources."""
 
 from __future__ import annotations
 
@@ -30,14 +30,15 @@ from linkwright.packages.programs.child_python import python_command
 if TYPE_CHECKING:
     from linkwright.packages.readers.entry_points import EntryPoint
 
-# The readers of sources and scripts are imported where they are used, because a launch of our own nodes does not need
-# them.
+# The readers of sources and scripts are imported where they are used, because a launch of Linkwright's own nodes does
+# not
+# need them.
 
 BUILT_IN = "built into Linkwright"
 
 
 class Origin(Enum):
-    """Where an executable comes from."""
+    """The origin of an executable."""
 
     OURS = "ours"
     INSTALLED = "installed"
@@ -51,8 +52,8 @@ class Executable:
     Attributes:
         package: the name of the package.
         name: the name of the program in the package.
-        origin: where the program comes from.
-        path: the path of the program; None for one of ours, and for an entry point that has no file yet.
+        origin: the origin of the program.
+        path: the path of the program; None for one of Linkwright's own, and for an entry point that has no script yet.
         entry_point: the function of an entry point in sources.
     """
 
@@ -64,7 +65,7 @@ class Executable:
 
     @property
     def command(self) -> list[str]:
-        """The words of the command that runs the program."""
+        """The command that runs the program, as a list of arguments."""
         from linkwright.packages.programs.interpreters import interpreter_words, needs_our_interpreter
 
         if self.path is None:
@@ -73,7 +74,7 @@ class Executable:
             return python_command([str(self.path)])
         if os.access(self.path, os.X_OK):
             return [str(self.path)]
-        words = interpreter_words(self.path)  # only an installation would make the script executable
+        words = interpreter_words(self.path)  # scripts in sources need not be executable
         return [*words, str(self.path)] if words else python_command([str(self.path)])
 
     def __str__(self) -> str:
@@ -81,7 +82,7 @@ class Executable:
 
 
 def is_hosted(package: str | None, executable: str) -> bool:
-    """Return whether a node is one of Linkwright's, which can run in this process."""
+    """Return whether an executable is one of Linkwright's nodes, which can run in this process."""
     if is_viewer(package, executable):
         return True
     from linkwright.nodes import EXECUTABLES
@@ -90,19 +91,21 @@ def is_hosted(package: str | None, executable: str) -> bool:
 
 
 def hosted_executables() -> list[tuple[str, str]]:
-    """Return the package and executable of all nodes that can run in this process."""
+    """Return the package and executable of every node that can run in this process."""
     from linkwright.nodes import EXECUTABLES
 
     return [*EXECUTABLES, VIEWER]
 
 
 def builtin_packages() -> set[str]:
-    """Return the packages whose executables come with Linkwright."""
+    """Return the names of the packages whose executables come with Linkwright."""
     return {package for package, _ in hosted_executables()}
 
 
 def executables_of(finder: PackageFinder, package: str) -> dict[str, Executable]:
-    """Return the programs of a package by name; ours take precedence, then built ones, then sources.
+    """Return the programs of a package by name.
+
+    Of programs with the same name, Linkwright's own takes precedence, then the built one, then the one in sources.
 
     Raises:
         PackageNotFoundError: PKG101, there is no such package.
@@ -127,9 +130,9 @@ def executables_of(finder: PackageFinder, package: str) -> dict[str, Executable]
 
 
 def installed_executable(finder: PackageFinder, package: str, name: str) -> Executable | None:
-    """Return a built program of a package, or None.
+    """Return a built program of a package, or None if there is none.
 
-    It is returned even if one of ours has the same name.
+    Unlike in `executables_of`, Linkwright's own programs do not take precedence.
     """
     share = finder.find(package)
     return (
@@ -140,7 +143,9 @@ def installed_executable(finder: PackageFinder, package: str, name: str) -> Exec
 
 
 def find_executable(finder: PackageFinder, package: str, name: str) -> Executable:
-    """Return a program of a package, with a file to run unless it is one of ours.
+    """Return a program of a package.
+
+    The program has a path, unless it is one of Linkwright's own.
 
     Raises:
         LinkwrightError: LAUNCH131, with the searched paths and similar names. The error is also a LookupError, because
@@ -193,7 +198,11 @@ def _script(finder: PackageFinder, executable: Executable) -> Path:
 
 
 def _check_module(executable: Executable, entry: EntryPoint, root: Path) -> None:
-    """Check that the module of an entry point exists before a process is started."""
+    """Check that the module of an entry point exists, so that the error is reported before the start.
+
+    Raises:
+        LinkwrightError: LAUNCH131, there is no such module.
+    """
     from linkwright.packages.programs.source_programs import module_file
 
     top = entry.module.partition(".")[0]
@@ -290,10 +299,7 @@ def _not_in_sources(package: str, name: str, share: Path) -> LinkwrightError:
 
 
 def _not_known_from_sources(package: str, name: str, share: Path) -> LinkwrightError:
-    """Return the error for a program that a package's sources do not show.
-
-    The package may nevertheless provide the program.
-    """
+    """Return the error for a program that a package may build, although its sources do not show it."""
     message = phrase("executable '{name}' of package '{package}' is not available", name=name, package=package)
     note = Note(phrase("the files in {share} do not show which programs it builds", share=display_path(share)))
     advice = phrase(

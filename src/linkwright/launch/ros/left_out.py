@@ -1,6 +1,6 @@
-"""Nodes that a launch skips.
+"""The nodes that a launch skips.
 
-They are removed from nav2's lifecycle manager, which would wait for them forever.
+These nodes are removed from nav2's lifecycle managers, which would wait for them forever.
 """
 
 from __future__ import annotations
@@ -20,19 +20,16 @@ def record_skipped_node(context: LaunchContext, name: str) -> None:
 
 
 def without_skipped_nodes(context: LaunchContext, package: str, parameters: dict[str, Any]) -> dict[str, Any]:
-    """Return the parameters of a node.
-
-    For a lifecycle manager, they omit the nodes skipped so far.
-    """
+    """Return the parameters of a node, without skipped nodes if it is a lifecycle manager."""
     if package != _MANAGER or not isinstance(parameters.get(_MANAGED), Iterable):
         return parameters
     return {**parameters, _MANAGED: _present(context, parameters[_MANAGED])}
 
 
 def remove_skipped_nodes(context: LaunchContext, request: Any) -> None:
-    """Remove skipped nodes from a request to load a lifecycle manager.
+    """Remove the skipped nodes from a request to load a lifecycle manager into a container.
 
-    See `without_skipped_nodes`.
+    Other requests are unchanged.
     """
     if request.package_name != _MANAGER:
         return

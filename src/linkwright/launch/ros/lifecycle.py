@@ -1,4 +1,4 @@
-"""Lifecycle nodes of a launch: the launcher requests and monitors their transitions."""
+"""Lifecycle nodes of a launch, whose transitions the launcher requests and monitors."""
 
 from __future__ import annotations
 
@@ -37,10 +37,10 @@ _DEPTH = 10
 class LifecycleEventManager:
     """Emits `StateTransition` events of a lifecycle node, and handles `ChangeState` events.
 
-    On the latter, it requests the transition from the node.
+    For each `ChangeState` event, the manager requests the transition from the node.
 
     Args:
-        lifecycle_node: the action or description of the node; its ``node_name`` is the full name.
+        lifecycle_node: the action or description of the node, whose ``node_name`` is the full name.
     """
 
     def __init__(self, lifecycle_node: Any) -> None:
@@ -54,7 +54,7 @@ class LifecycleEventManager:
         return str(self._node.node_name)
 
     def setup_lifecycle_manager(self, context: LaunchContext) -> None:
-        """Start monitoring the node."""
+        """Start to monitor the node and to handle requests for its transitions."""
         launcher = context.session.host.launcher_node
         launcher.create_subscription(
             "lifecycle_msgs/msg/TransitionEvent",
@@ -90,7 +90,11 @@ class LifecycleEventManager:
 
 
 async def call_service(context: LaunchContext, client: Any, request: Any) -> Any:
-    """Wait for a service, call it and return its response, or None if the launch ends first."""
+    """Wait for a service, call it, and return the response.
+
+    Returns:
+        The response; None if the launch ends before the response arrives.
+    """
     future = client.call_async(request)
     while not future.done():
         if context.is_shutdown:
@@ -143,7 +147,7 @@ class LifecycleNode(Node):
     def parse(
         cls, entity: Entity, parser: Parser, ignore: Sequence[str] | None = None
     ) -> tuple[type[Action], dict[str, Any]]:
-        """Read the attributes of a node's tag, and ``autostart``."""
+        """Read the attributes of a node's tag and the attribute ``autostart``."""
         _, kwargs = super().parse(entity, parser, ignore)
         autostart = entity.get_attr("autostart", data_type=bool, optional=True)
         if autostart is not None:
@@ -161,7 +165,7 @@ class LifecycleNode(Node):
         return self.__manager.current_state
 
     def execute(self, context: LaunchContext) -> list[Any] | None:
-        """Start the node, and monitor its state.
+        """Start the node, and start to monitor its state.
 
         Raises:
             LinkwrightError: see `Node.execute`.
@@ -184,9 +188,9 @@ def autostarts(context: LaunchContext, value: Any) -> bool:
 
 
 def autostart_actions(action: Any) -> list[Any]:
-    """Return event handlers that configure and activate a lifecycle node.
+    """Return actions that register event handlers to configure and activate a lifecycle node.
 
-    It is configured when it has started, and activated when it is configured.
+    The node is configured when it has started, and activated when it is configured.
     """
     change = {
         number: EmitEvent(event=ChangeState(lifecycle_node_matcher=events.matches_action(action), transition_id=number))

@@ -47,11 +47,11 @@ NodeMatcher = Callable[[Any], bool]
 
 
 class ChangeState(Event):
-    """A request that the lifecycle nodes that the matcher accepts make a transition.
+    """A request for a transition to the lifecycle nodes that the matcher accepts.
 
     Args:
         lifecycle_node_matcher: called with the action of each lifecycle node; returns whether the request applies to
-            it.
+            the node.
         transition_id: the ID of the transition, see `TRANSITIONS`.
     """
 
@@ -123,7 +123,7 @@ class OnStateTransition(EventHandler):
         transition: the name of the transition.
         start_state: the name of the state before the transition.
         goal_state: the name of the state after the transition.
-        matcher: called with the event, and used instead of the target, transition and states.
+        matcher: called with the event instead of a comparison with the target, transition and states.
     """
 
     def __init__(

@@ -1,4 +1,4 @@
-"""The action that leads lifecycle nodes through several transitions."""
+"""The action that requests several transitions of lifecycle nodes in sequence."""
 
 from __future__ import annotations
 
@@ -37,7 +37,9 @@ _GOALS = {
 
 
 class LifecycleTransition(Action):
-    """Requests transitions of lifecycle nodes, one after another; an error ends the sequence.
+    """Requests transitions of lifecycle nodes, one after another.
+
+    An error ends the sequence of the node.
 
     Args:
         lifecycle_node_names: the names of the nodes; a missing leading slash is added.
@@ -64,10 +66,10 @@ class LifecycleTransition(Action):
         self._handlers: dict[str, list[BaseEventHandler]] = {}
 
     def execute(self, context: LaunchContext) -> list[Action]:
-        """Return actions that handle the later transitions and request the first ones.
+        """Return actions that request the first transitions and register handlers that request the others.
 
         Raises:
-            LinkwrightError: LAUNCH138, a transition is not a number, or does not end in a state.
+            LinkwrightError: LAUNCH138, a transition ID is not a number, or its transition has no known goal state.
         """
         names = [perform_substitutions(context, name) for name in self._names]
         numbers = [self._number(perform_substitutions(context, text)) for text in self._ids]
@@ -106,7 +108,7 @@ class LifecycleTransition(Action):
                 text = f"Stopping transitions for {name} because '{reason}'"
                 context.session.log.info_line("launch_ros.actions.lifecycle_transition", text)
             for handler in self._handlers.pop(name, ()):
-                with suppress(ValueError):  # raised if the handler was already unregistered after its event
+                with suppress(ValueError):  # raised if the handler was unregistered after its event
                     context.unregister_event_handler(handler)
 
         return OpaqueFunction(function=end)

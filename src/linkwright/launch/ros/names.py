@@ -1,6 +1,6 @@
-"""Names of nodes, namespaces and remapping rules.
+"""Node names, namespaces and remapping rules.
 
-The number of nodes that were started under a name is counted, too.
+This module also counts the nodes that were started under each name.
 """
 
 from __future__ import annotations
@@ -32,14 +32,14 @@ def is_namespace_absolute(ns: str) -> bool:
 
 
 def make_namespace_absolute(ns: str | None) -> str | None:
-    """Return a namespace with a leading slash; None stays None."""
+    """Return a namespace with a leading slash, or None for None."""
     return ns if ns is None or is_namespace_absolute(ns) else f"/{ns}"
 
 
 def prefix_namespace(base_ns: str | None, ns: str | None, *, return_absolute_ns: bool = False) -> str | None:
     """Return a namespace nested in another.
 
-    An absolute namespace stays unchanged, and None means not given.
+    An absolute inner namespace is returned unchanged. None means that a namespace is not given.
 
     Args:
         base_ns: the outer namespace.
@@ -70,9 +70,10 @@ def get_node_name_count(context: Any, node_name: str) -> int:
 
 
 def repetition_warning(context: Any, node_name: str) -> str | None:
-    """Record the start of a node, and return a warning or None.
+    """Record the start of a node, and return a warning if another node has the same name.
 
-    The warning is about another node with the same name.
+    Returns:
+        The warning, or None if the name is unique.
     """
     add_node_name(context, node_name)
     count = get_node_name_count(context, node_name)
@@ -91,7 +92,7 @@ def _counts(context: Any) -> defaultdict[str, int]:
 
 
 def check_name(name: str) -> str:
-    """Return a node name if it is valid.
+    """Check a node name, and return it unchanged.
 
     Raises:
         LinkwrightError: LAUNCH134, the name is not valid.
@@ -107,7 +108,7 @@ def check_name(name: str) -> str:
 
 
 def check_namespace(namespace: str) -> str:
-    """Return a namespace as an absolute one if it is valid.
+    """Check a namespace, and return it unchanged.
 
     Raises:
         LinkwrightError: LAUNCH134, the namespace is not valid.
@@ -126,7 +127,7 @@ RemapRule = tuple[tuple[Substitution, ...], tuple[Substitution, ...]]
 
 
 def normalize_remap_rule(remap_rule: Any) -> RemapRule:
-    """Convert a pair of names to tuples of substitutions.
+    """Convert a pair of names to a pair of tuples of substitutions.
 
     Raises:
         TypeError: LAUNCH135, the argument is not a pair of names.
@@ -141,10 +142,10 @@ def normalize_remap_rule(remap_rule: Any) -> RemapRule:
 
 
 def normalize_remap_rules(remap_rules: Iterable[Any]) -> Iterable[RemapRule]:
-    """Convert pairs of names to tuples of substitutions.
+    """Convert pairs of names to pairs of tuples of substitutions.
 
     Raises:
-        TypeError: LAUNCH135, the arguments are not pairs of names.
+        TypeError: LAUNCH135, the argument is not a list of pairs of names.
     """
     if isinstance(remap_rules, (str, dict)) or not isinstance(remap_rules, Iterable):
         message = phrase("'remappings' must be a list of pairs of names, not {name}", name=type(remap_rules).__name__)

@@ -60,7 +60,7 @@ _OF_A_PROCESS = re.compile(r"(ROS|RCUTILS|RMW|CYCLONEDDS|ZENOH|LINKWRIGHT)_")
 class Node(ExecuteProcess):
     """Starts a node.
 
-    A Linkwright node runs in the launcher's process, any other node in a separate process.
+    A Linkwright node runs in the launcher's process, and any other node in a separate process.
 
     Args:
         executable: the node's executable in the package, or a program if no package is given.
@@ -68,7 +68,7 @@ class Node(ExecuteProcess):
         name: the name to give to the node.
         namespace: the namespace of the node, inside the namespaces of `PushRosNamespace` unless it starts with a slash.
         exec_name: the name of the process in the log.
-        parameters: dictionaries, paths of YAML files, `ParameterFile` and `Parameter` objects; later ones take
+        parameters: dictionaries, paths of YAML files, `ParameterFile` and `Parameter` objects; later items take
             precedence.
         remappings: pairs of names.
         ros_arguments: further arguments after ``--ros-args``.
@@ -79,8 +79,9 @@ class Node(ExecuteProcess):
     UNSPECIFIED_NODE_NAME = "<node_name_unspecified>"
     UNSPECIFIED_NODE_NAMESPACE = "<node_namespace_unspecified>"
 
-    # These attributes are set when the node is started. Programs that use the internals of launch_ros expect their
-    # names.
+    # These attributes are set when the node is started. They have the names of launch_ros's private attributes, which
+    # some
+    # programs use.
     __substitutions_performed: bool
     __expanded_node_name: str
     __expanded_node_namespace: str
@@ -130,16 +131,16 @@ class Node(ExecuteProcess):
     def parse(
         cls, entity: Entity, parser: Parser, ignore: Sequence[str] | None = None
     ) -> tuple[type[Action], dict[str, Any]]:
-        """Read the attributes of a process's tag, and the additional ones of a node.
+        """Read the attributes that a node's tag shares with a process's tag, and its own ones.
 
-        These are ``pkg``, ``exec``, ``param``, ``remap`` and so on.
+        Examples of its own attributes and tags are ``pkg``, ``exec``, ``param`` and ``remap``.
         """
         _, kwargs = super().parse(entity, parser, ignore=["cmd", *(ignore or ())])
         return cls, parse_node(entity, parser, kwargs, cls)
 
     @staticmethod
     def parse_nested_parameters(params: list[Entity], parser: Parser) -> list[Any]:
-        """Return the parameters in ``param`` tags."""
+        """Return the parameters in ``param`` tags in the form of a node's ``parameters``."""
         from linkwright.launch.ros.parsing import parse_parameters
 
         return parse_parameters(params, parser)
@@ -148,20 +149,20 @@ class Node(ExecuteProcess):
 
     @property
     def node_package(self) -> Any:
-        """The package, as given."""
+        """The package as given: a string, substitutions or None."""
         return self.__package
 
     @property
     def node_executable(self) -> Any:
-        """The executable, as given."""
+        """The executable as given: a string or substitutions."""
         return self.__node_executable
 
     @property
     def node_name(self) -> str:
-        """The full name of the node, once it is known.
+        """The full name of the node, which is known after the action was executed.
 
         Raises:
-            RuntimeError: it is not known yet.
+            RuntimeError: the action was not executed yet.
         """
         if self.__final_node_name is None:
             raise RuntimeError("cannot access 'node_name' before executing action")
@@ -169,12 +170,12 @@ class Node(ExecuteProcess):
 
     @property
     def expanded_node_namespace(self) -> str:
-        """The namespace, or `UNSPECIFIED_NODE_NAMESPACE` if none is given."""
+        """The evaluated namespace, or `UNSPECIFIED_NODE_NAMESPACE` if none is given."""
         return self.__expanded_node_namespace
 
     @property
     def expanded_remapping_rules(self) -> list[tuple[str, str]] | None:
-        """The remappings, starting with those of the scope; None if there are none."""
+        """The evaluated remapping rules, starting with the rules of the scope; None if there are none."""
         return self.__expanded_remappings
 
     def is_node_name_fully_specified(self) -> bool:
@@ -212,9 +213,10 @@ class Node(ExecuteProcess):
         return None
 
     def __extended(self, context: LaunchContext) -> list[Any]:
-        """Let extensions change the name and namespace.
+        """Run the extensions, which may change the name and namespace.
 
-        Return what they add to the command line.
+        Returns:
+            The arguments that the extensions add to the command line.
         """
         added: list[Any] = []
         given: dict[str, Any] = {}
@@ -230,11 +232,11 @@ class Node(ExecuteProcess):
         return added
 
     def viewer_config(self, context: LaunchContext) -> Callable[[], RvizConfig] | None:
-        """Return a factory of the viewer's configuration, or None to take it from the command line."""
+        """Return a factory of the viewer's configuration; None if the command line determines it."""
         return None
 
     def _perform_substitutions(self, context: LaunchContext) -> None:
-        """Evaluate the name, namespace, parameters and remappings, and the rest of the command."""
+        """Evaluate the name, namespace, parameters and remappings, and complete the command line."""
         if self.__substitutions_performed:
             return
         try:
@@ -260,9 +262,9 @@ class Node(ExecuteProcess):
         self.__substitutions_performed = True
 
     def __forget(self) -> None:
-        """Reset the state for another visit.
+        """Reset the results of an earlier execution.
 
-        The action may be visited again after the model it needs was fixed.
+        The action is executed again after a robot description that it needs was fixed.
         """
         del self.cmd[self.__fixed_words :]
         self.__substitutions_performed = False
@@ -286,10 +288,10 @@ class Node(ExecuteProcess):
         self.__final_node_name = f"{self.__expanded_node_namespace.rstrip('/')}/{self.__expanded_node_name}"
 
     def __name_in_files(self, context: LaunchContext) -> str | None:
-        """Return the full name by which parameter files name the node.
+        """Return the full name by which parameter files refer to the node.
 
-        The result is None if only the program knows it. A container runs other nodes, too, to which its files may
-        apply.
+        The result is None if the name is not given and only the program knows it. It is also None for a container,
+        because the files may apply to other nodes that the container runs.
         """
         package = None if self.__package is None else _text(context, self.__package)
         if self.__node_name is None or package == _CONTAINERS:
@@ -300,9 +302,10 @@ class Node(ExecuteProcess):
 
     @property
     def __expanded_parameter_arguments(self) -> list[tuple[str, bool]]:
-        """The parameter arguments of the command line, each with whether it is a file.
+        """The parameter arguments of the command line, each with whether it is the path of a file.
 
-        Files are written on first use. As in launch_ros, only files are included from the parameters of the scope.
+        Files for dictionaries are written on first access. As in launch_ros, the parameters of the scope are included
+        only if they are files.
         """
         if self.__parameter_words is None:
             folder = self.__scratch_folder if self.__scratch_folder and self.__scratch_folder.is_dir() else None
@@ -351,7 +354,7 @@ class Node(ExecuteProcess):
         full_name = f"{namespace.rstrip('/')}/{own_name or executable}"
         if (
             name is None and own_name is not None and package != _CONTAINERS
-        ):  # otherwise the parameters were checked before, or cannot be checked
+        ):  # other nodes were checked before, or cannot be checked
             self.__node_parameters.check(context, full_name, self.place)
         plan = HostedPlan(
             self,
@@ -397,7 +400,8 @@ class Node(ExecuteProcess):
         plan = super()._plan(context, command)
         if self.process_description.name is not None:
             return plan
-        # The process is named after its executable, even if an interpreter runs it or the node is one of ours.
+        # The executable's name is the process's name, even if an interpreter runs it or the node is one of
+        # Linkwright's.
         return replace(plan, name=Path(_text(context, self.__node_executable)).name)
 
     def _environment(self, context: LaunchContext) -> dict[str, str]:
@@ -405,11 +409,11 @@ class Node(ExecuteProcess):
 
 
 class _DeferredWord(Substitution):
-    """A word of the command line that is known only when the action starts the node.
+    """A command-line argument that is known only when the action starts the node.
 
     Args:
-        what: the name of the word in listings.
-        word: the function that returns the word.
+        what: the name of the argument in listings.
+        word: the function that returns the argument.
     """
 
     def __init__(self, what: str, word: Callable[[], str]) -> None:
@@ -417,16 +421,16 @@ class _DeferredWord(Substitution):
         self._word = word
 
     def describe(self) -> str:
-        """Return a text with the name of the word."""
+        """Return a text with the name of the argument."""
         return f"LocalVar('ros_specific_arguments['{self._what}']')"
 
     def perform(self, context: LaunchContext) -> str:
-        """Return the word."""
+        """Return the argument."""
         return self._word()
 
 
 def _listed(values: Any) -> list[Any]:
-    """Return a single word or several words as a list."""
+    """Return one or several arguments as a list, which is empty for None."""
     if values is None:
         return []
     return [values] if isinstance(values, (str, Substitution)) or not isinstance(values, Iterable) else list(values)

@@ -1,6 +1,6 @@
 """Extensions of the node action.
 
-Users' packages provide them, and they run before a node is started.
+Extensions are provided by users' packages and run before a node is started.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class NodeActionExtension:
     def prepare_for_execute(
         self, context: LaunchContext, ros_specific_arguments: dict[str, Any], node_action: Action
     ) -> tuple[Sequence[Any], dict[str, Any]]:
-        """Modify a node before it is started.
+        """Modify the arguments of a node before it is started.
 
         Args:
             context: the context of the launch.

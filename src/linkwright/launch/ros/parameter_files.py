@@ -68,22 +68,20 @@ class ParameterFile(Placed):
 
     @property
     def param_file(self) -> list[Substitution] | Path:
-        """The path as substitutions, or the path of the evaluated file after evaluation."""
+        """The path of the file as substitutions, or the path that `evaluate` returned."""
         return self._param_file if self._evaluated is None else self._evaluated
 
     @property
     def allow_substs(self) -> Any:
-        """Whether substitutions in the file are evaluated."""
+        """Whether substitutions in the file are evaluated: a boolean, or substitutions before `evaluate`."""
         return self._allow_substs if self._allowed is None else self._allowed
 
     def evaluate(self, context: LaunchContext) -> Path:
-        """Return the path of the file, or of a copy with evaluated substitutions.
-
-        The copy is a temporary file.
+        """Return the path of the file, or of a temporary copy with evaluated substitutions.
 
         Raises:
-            LinkwrightError: LAUNCH133, the errors in a file with substitutions; the error is a SubstitutionFailure,
-                too.
+            LinkwrightError: LAUNCH133, the errors in a file with substitutions; the error is also a
+                SubstitutionFailure.
         """
         if self._evaluated is None:
             path = Path(perform_substitutions(context, self._param_file))
@@ -207,7 +205,7 @@ def substitute_text(source: SourceText, context: LaunchContext) -> str:
 
 
 def _end_of(text: str, start: int) -> int:
-    """Return the end of the substitution at an offset, or the end of its line if it is not closed."""
+    """Return the offset after the substitution at an offset, or the end of the line if it is not closed."""
     depth = 0
     for offset in range(start, len(text)):
         if text[offset] == "(":

@@ -1,7 +1,8 @@
 """Normalization and evaluation of a node's ``parameters`` (``launch_ros.utilities``).
 
-They are normalized, and thus checked, when the node is created. Paths become `ParameterFile` objects, and dictionaries
-become flat, with tuples of substitutions for names and either plain values or tuples of substitutions for values.
+Parameters are normalized, and thus checked, when the node is created. Paths become `ParameterFile` objects.
+Dictionaries
+become flat: their names are tuples of substitutions, and their values are plain values or tuples of substitutions.
 Evaluation converts each item to a path, a dictionary of values by name, or a `Parameter`.
 """
 
@@ -28,7 +29,7 @@ NormalizedDict = dict[Name, Any]
 
 
 class PlainItem(TextSubstitution):
-    """A value among substitutions that keeps its type, so that a string is not read as YAML.
+    """A literal item among substitutions, which keeps its type: a string is not read as YAML.
 
     Attributes:
         value: the value.
@@ -43,7 +44,7 @@ def normalize_parameters(parameters: Any) -> tuple[Any, ...]:
     """Normalize the ``parameters`` of a node.
 
     Raises:
-        LinkwrightError: LAUNCH132, they are not a list, or an item is invalid; the error is a TypeError, too.
+        LinkwrightError: LAUNCH132, the parameters are not a list, or an item is invalid; the error is also a TypeError.
     """
     place = Place.of_caller()
     if isinstance(parameters, (str, Mapping)) or not isinstance(parameters, Sequence):
@@ -56,10 +57,12 @@ def normalize_parameters(parameters: Any) -> tuple[Any, ...]:
 def normalize_parameter_dict(
     parameters: Mapping[Any, Any], *, _prefix: Sequence[Substitution] | None = None
 ) -> NormalizedDict:
-    """Normalize a dictionary of parameters; nested dictionaries become names with dots.
+    """Normalize a dictionary of parameters.
+
+    The names in nested dictionaries are joined with dots.
 
     Raises:
-        LinkwrightError: LAUNCH132, a name or value is invalid for a parameter; the error is a TypeError, too.
+        LinkwrightError: LAUNCH132, a name or value is not valid for a parameter; the error is also a TypeError.
     """
     if not isinstance(parameters, Mapping):
         raise TypeError("expected dict")
@@ -76,7 +79,7 @@ def normalize_parameter_dict(
 
 
 def evaluate_parameters(context: LaunchContext, parameters: Iterable[Any]) -> tuple[Any, ...]:
-    """Evaluate normalized parameters to a path, a dictionary or a `Parameter` for each item.
+    """Evaluate each normalized parameter to a path, a dictionary or a `Parameter`.
 
     Raises:
         LinkwrightError: LAUNCH132 or LAUNCH133, the errors in a value or a file.
@@ -90,7 +93,7 @@ def evaluate_parameter_dict(context: LaunchContext, parameters: NormalizedDict) 
     Lists become tuples.
 
     Raises:
-        LinkwrightError: LAUNCH132, the errors in a value; the error is a TypeError, too.
+        LinkwrightError: LAUNCH132, the errors in a value; the error is also a TypeError.
     """
     if not isinstance(parameters, Mapping):
         raise TypeError("expected dict")

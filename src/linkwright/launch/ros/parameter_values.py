@@ -1,7 +1,7 @@
 """Values of node parameters (``launch_ros.parameter_descriptions``).
 
-They may contain substitutions. A substitution evaluates to text. As in launch_ros, ``value_type`` sets the type of the
-parameter, and YAML's rules determine it if ``value_type`` is not given.
+The values may contain substitutions, which evaluate to text. As in launch_ros, ``value_type`` sets the type of the
+parameter. If ``value_type`` is not given, YAML's rules determine the type.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class ParameterValue(Placed):
     """A parameter value with a type.
 
     Args:
-        value: the value, or substitutions that evaluate to it as text.
+        value: the value, or substitutions that evaluate to the text of the value.
         value_type: bool, int, float, str, or a list of one of these such as ``List[int]``; None for YAML's rules.
 
     Raises:
@@ -60,7 +60,7 @@ class ParameterValue(Placed):
 
     @property
     def value(self) -> Any:
-        """The value as given, with substitutions as lists; after evaluation, the result."""
+        """The given value, with substitutions as lists, or the evaluated value after `evaluate`."""
         return self._value if self._evaluated is None else self._evaluated
 
     @property
@@ -76,8 +76,8 @@ class ParameterValue(Placed):
             name: the parameter's name, for messages.
 
         Raises:
-            LinkwrightError: LAUNCH132, the text is not a value of the type; the error is a ValueError or TypeError,
-                too, as in launch_ros.
+            LinkwrightError: LAUNCH132, the text is not a value of the type. As in launch_ros, the error is also a
+                ValueError or TypeError.
         """
         called = phrase("parameter '{name}'", name=name) if name else phrase("the value of a parameter")
         try:
@@ -104,7 +104,7 @@ class ParameterValue(Placed):
 
 
 class Parameter:
-    """A name and a value, for the ``parameters`` of a node.
+    """A parameter for the ``parameters`` of a node.
 
     Args:
         name: the name of the parameter.
@@ -124,7 +124,7 @@ class Parameter:
 
     @property
     def name(self) -> list[Substitution] | str:
-        """The name as substitutions; after evaluation, as text."""
+        """The name as substitutions, or as text after `evaluate`."""
         return self._name if self._rule is None else self._rule[0]
 
     @property
@@ -134,11 +134,11 @@ class Parameter:
 
     @property
     def value_type(self) -> Any:
-        """The type of the value."""
+        """The type of the value, or None for YAML's rules."""
         return self._parameter_value.value_type
 
     def evaluate(self, context: LaunchContext) -> tuple[str, Any]:
-        """Evaluate the name and the value, and return them.
+        """Evaluate and return the name and the value.
 
         Raises:
             LinkwrightError: LAUNCH132, the text is not a value of the type.
@@ -150,20 +150,21 @@ class Parameter:
 
 
 def yaml_value(text: str, name: str, place: Place | None) -> Any:
-    """Read a text as YAML, as launch_ros does for parameters without a type.
+    """Parse the text of a parameter without a type as YAML, as launch_ros does.
 
     Lists become tuples.
 
     Raises:
-        LinkwrightError: LAUNCH132, the text is not YAML, or its value is invalid for a parameter; the error is a
-            TypeError, too, as in launch_ros.
+        LinkwrightError: LAUNCH132, the text is not YAML, or its value is not valid for a parameter. As in launch_ros,
+            the error is also a TypeError.
     """
     value = _loaded(text, name, place)
     if value is None:
         return ""
     if isinstance(value, str):
-        # YAML would fold the lines of an XML text. Return it unfolded: it means the same, and locations in it stay
-        # correct.
+        # YAML folds the lines of a plain text. XML is returned unfolded, which has the same meaning and keeps the
+        # locations in
+        # it correct.
         return text if text.lstrip().startswith("<") else value
     if isinstance(value, (*SCALARS, bytes)):
         return value
@@ -179,13 +180,11 @@ def yaml_value(text: str, name: str, place: Place | None) -> Any:
 
 
 def uniform(items: Sequence[Any], name: str, place: Place | None) -> tuple[Any, ...]:
-    """Return the items of a list parameter as a tuple, after checking their type.
-
-    All items must have one type that is valid for list parameters.
+    """Check that all items of a list parameter have one valid type, and return them as a tuple.
 
     Raises:
-        LinkwrightError: LAUNCH132, their types differ, or there are none; the error is a TypeError, too, as in
-            launch_ros.
+        LinkwrightError: LAUNCH132, the types differ or are not valid, or the list is empty. As in launch_ros, the error
+            is also a TypeError.
     """
     kinds = {type(item) for item in items}
     if len(kinds) == 1 and kinds <= set(SCALARS):

@@ -1,6 +1,6 @@
 """The parameters of a node.
 
-In order of precedence, they come from its scope, from files and from its own list.
+They are set, in increasing order of precedence, by the scope of the node and by its own list of files and values.
 """
 
 from __future__ import annotations
@@ -35,7 +35,9 @@ ANY_NODE = "/**"
 class FileSource:
     """A parameter file.
 
-    `file` is for reading it in this process, and `path` is for other processes.
+    Attributes:
+        file: the file as this process reads it.
+        path: the path that is passed to other processes.
     """
 
     file: ParameterFile
@@ -53,9 +55,9 @@ class NodeParameters:
     sources: list[FileSource | dict[str, Any] | tuple[str, Any]] = field(default_factory=list)
 
     def without_missing_files(self, context: LaunchContext, place: Place | None) -> NodeParameters:
-        """Return the parameters without missing files, and report each missing file.
+        """Return the parameters without missing files, and warn about each missing file.
 
-        launch_ros ignores them, too.
+        launch_ros also ignores missing files.
 
         Args:
             context: the context of the launch, for the warnings (LAUNCH133).
@@ -99,7 +101,7 @@ class NodeParameters:
         """Return the parameter values by name, for a node in this process.
 
         Args:
-            context: the context in which the files were evaluated.
+            context: the context for files that are not evaluated yet.
             node: the node's full name, which selects the values in files.
 
         Raises:
@@ -119,7 +121,7 @@ class NodeParameters:
         """Return the rules in the files, including the rules for other nodes of the process.
 
         Args:
-            context: the context in which the files were evaluated.
+            context: the context for files that are not evaluated yet.
 
         Raises:
             LinkwrightError: LAUNCH133 and GRAPH212, the errors in a file.
@@ -131,13 +133,14 @@ class NodeParameters:
         return found
 
     def arguments(self, node: str | None, folder: Path | None) -> list[tuple[str, bool]]:
-        """Return command-line arguments for another process.
-
-        They are file paths (True) or rules ``name:=value`` (False).
+        """Return the command-line arguments that pass the parameters to another process.
 
         Args:
             node: the node's full name; None if it is not known.
-            folder: the folder for files with dictionaries; None for the system's temporary folder.
+            folder: the folder for files with the values of dictionaries; None for the system's temporary folder.
+
+        Returns:
+            The arguments, each with whether it is the path of a file; otherwise it is a rule ``name:=value``.
         """
         arguments: list[tuple[str, bool]] = []
         for source in self.sources:
@@ -157,10 +160,7 @@ def _warn(context: LaunchContext, code: str, message: Phrase, hint: Phrase | Non
 
 
 def scope_parameters(given: Iterable[Any], context: LaunchContext) -> NodeParameters:
-    """Return the parameters of a node's scope.
-
-    `SetParameter` and `SetParametersFromFile` set them.
-    """
+    """Return the parameters of a node's scope, which `SetParameter` and `SetParametersFromFile` set."""
     found = NodeParameters()
     for item in given:
         if isinstance(item, tuple):
@@ -172,7 +172,7 @@ def scope_parameters(given: Iterable[Any], context: LaunchContext) -> NodeParame
 
 
 def own_parameters(normalized: Sequence[Any], context: LaunchContext) -> NodeParameters:
-    """Evaluate a node's own parameters, which `normalize_parameters` has normalized.
+    """Evaluate the normalized parameters of a node (see `normalize_parameters`).
 
     Raises:
         LinkwrightError: LAUNCH132 or LAUNCH133, the errors in a value or a file.
@@ -190,7 +190,7 @@ def own_parameters(normalized: Sequence[Any], context: LaunchContext) -> NodePar
 
 
 def rule(name: str, value: Any) -> str:
-    """Format a parameter for the command line as ``name:=value``, with the value in YAML."""
+    """Format a parameter for the command line as ``name:=value``, where the value is YAML."""
     import yaml
 
     value = list(value) if isinstance(value, tuple) else value
@@ -199,9 +199,9 @@ def rule(name: str, value: Any) -> str:
 
 
 def write_file(parameters: dict[str, Any], node: str | None, folder: Path | None) -> str:
-    """Write parameter values to a new file, and return its path.
+    """Write parameter values for a node to a new file, and return the path of the file.
 
-    The values are for a node, or for any node if its name is not known.
+    If the node's name is not known, the values are for any node.
     """
     import tempfile
 

@@ -29,7 +29,7 @@ def parse_node(entity: Entity, parser: Parser, kwargs: dict[str, Any], cls: Any)
         words = entity.get_attr(attribute, optional=True)
         if words is not None:
             kwargs[keyword] = cls._parse_cmdline(words, parser)
-    kwargs.pop("name", None)  # this is the process's name, read from the same attribute
+    kwargs.pop("name", None)  # the base class has read the process's name from the same attribute
     kwargs.update(parse_texts(entity, parser, name="name", exec_name="exec_name", package="pkg", namespace="namespace"))
     kwargs["executable"] = parser.parse_substitution(entity.get_attr("exec"))
     kwargs.update(parse_remappings(entity, parser))
@@ -42,7 +42,7 @@ def parse_node(entity: Entity, parser: Parser, kwargs: dict[str, Any], cls: Any)
 def parse_remappings(entity: Entity, parser: Parser) -> dict[str, Any]:
     """Return the keyword argument ``remappings`` for the ``remap`` tags inside.
 
-    The result is empty if there are none.
+    The result is empty if there are no such tags.
     """
     tags = entity.get_attr("remap", data_type=Entities, optional=True)
     if tags is None:
@@ -110,9 +110,9 @@ def _nested(tags: list[Entity], parser: Parser) -> dict[Any, Any]:
 
 
 def _not_of_type(tag: Entity, value: Any, identifier: str | None, error: Exception) -> Exception:
-    """Return the error for the value of a ``param`` tag.
+    """Return the error for a ``param`` tag whose value does not have its type.
 
-    An error that has a location is returned unchanged.
+    A LinkwrightError with a code other than LAUNCH132 is returned unchanged.
     """
     if isinstance(error, LinkwrightError) and error.diagnostics[0].code != "LAUNCH132":
         return error

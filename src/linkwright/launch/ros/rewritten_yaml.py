@@ -1,6 +1,6 @@
 """The substitutions of ``nav2_common.launch`` that rewrite and query parameter files.
 
-They are part of the Navigation2 project, but launch files of many robots use them.
+The package ``nav2_common`` is part of Navigation2, but launch files of many robots use these substitutions.
 """
 
 from __future__ import annotations
@@ -78,8 +78,8 @@ class RewrittenYaml(_YamlFileSubstitution):
 
     Args:
         source_file: the file to copy.
-        param_rewrites: name -> value for all parameters with that name, or path with dots -> value for one parameter; a
-            path with ``ros__parameters`` in it is added if the file has no such parameter.
+        param_rewrites: name -> value for all parameters with that name, or path with dots -> value for one parameter. A
+            path that contains ``ros__parameters`` is added if the file has no such parameter.
         root_key: a root key under which the entire content is nested.
         key_rewrites: name -> new name of keys.
         value_rewrites: text -> new text of values.
@@ -136,7 +136,7 @@ class RewrittenYaml(_YamlFileSubstitution):
 
 
 def _leaves(content: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[str, ...]]:
-    """Yield the paths of all values."""
+    """Yield the path of each value in nested dictionaries and lists, as a tuple of keys."""
     if isinstance(content, dict):
         items: Any = content.items()
     elif isinstance(content, list):
@@ -149,7 +149,13 @@ def _leaves(content: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[str, ...
 
 
 def _with_values(content: Any, values: Mapping[str, Any], path: tuple[str, ...]) -> Any:
-    """Return the content with values replaced, which are given by key or by full path."""
+    """Return the content with values replaced.
+
+    Args:
+        content: the content.
+        values: key or full path with dots -> new value.
+        path: the keys above the content.
+    """
     if isinstance(content, list):
         return [_with_values(item, values, (*path, str(number))) for number, item in enumerate(content)]
     if isinstance(content, dict):
@@ -189,7 +195,8 @@ class ReplaceString(_YamlFileSubstitution):
     Args:
         source_file: the file to copy.
         replacements: text -> replacement.
-        condition: a condition; if it does not hold, the result is the path of the file itself.
+        condition: the condition under which texts are replaced. If it does not hold, the result is the path of the file
+            itself.
     """
 
     def __init__(
@@ -208,7 +215,9 @@ class ReplaceString(_YamlFileSubstitution):
         return self._condition
 
     def perform(self, context: LaunchContext) -> str:
-        """Write the new file if the condition holds, and return the path of the result.
+        """Write the new file if the condition holds, and return its path.
+
+        If the condition does not hold, return the path of the original file.
 
         Raises:
             LinkwrightError: LAUNCH152, the file cannot be read.
@@ -222,7 +231,7 @@ class ReplaceString(_YamlFileSubstitution):
 
 
 class HasNodeParams(_YamlFileSubstitution):
-    """Whether a parameter file has parameters for a node: ``True`` or ``False``."""
+    """A test that evaluates to ``True`` if a parameter file has parameters for a node, else to ``False``."""
 
     def __init__(self, source_file: SomeSubstitutionsType, node_name: str) -> None:
         super().__init__(source_file)
@@ -239,7 +248,10 @@ class HasNodeParams(_YamlFileSubstitution):
 
 
 class LaunchConfigAsBool(Substitution):
-    """A launch configuration as ``True`` or ``False``; ``on`` and ``yes`` count as true, too."""
+    """A launch configuration converted to ``True`` or ``False``.
+
+    The values ``on`` and ``yes`` also count as true.
+    """
 
     def __init__(self, name: str) -> None:
         from linkwright.launch.model.substitutions import LaunchConfiguration
@@ -251,7 +263,7 @@ class LaunchConfigAsBool(Substitution):
         return f"LaunchConfigAsBool({self._configuration.describe()})"
 
     def perform(self, context: LaunchContext) -> str:
-        """Return ``True`` or ``False``."""
+        """Return ``True`` if the value of the launch configuration is true, else ``False``."""
         return str(self._configuration.perform(context).strip().lower() in _TRUE)
 
 
@@ -272,12 +284,15 @@ class ParseMultiRobotPose(Substitution):
         return f"ParseMultiRobotPose({words})"
 
     def value(self) -> dict[str, dict[str, float]]:
-        """Return name -> pose of the robots, from the launch argument on the command line."""
+        """Parse the launch argument on the command line, and return the pose of each robot by name."""
         start = f"{self._argument}:="
         return self._parsed(next((word[len(start) :] for word in sys.argv if word.startswith(start)), ""))
 
     def perform(self, context: LaunchContext) -> Any:
-        """Return name -> pose of the robots, unlike other substitutions, which return a text."""
+        """Return the pose of each robot by name.
+
+        Unlike other substitutions, this one does not return a text.
+        """
         if isinstance(self._argument, str):
             return self._parsed(str(context.launch_configurations.get(self._argument, "")))
         return self._parsed(self._argument.perform(context))
@@ -318,7 +333,10 @@ def _performed(context: LaunchContext, rewrites: Mapping[str, list[Substitution]
 
 
 def _write_file(context: LaunchContext, text: str, suffix: str) -> str:
-    """Write a new file, which is deleted after a running launch, and return its path."""
+    """Write a new file, and return its path.
+
+    If a launch is running, the file is deleted after it.
+    """
     folder = context.session.scratch_folder if context.is_running else None
     with tempfile.NamedTemporaryFile("w", suffix=suffix, dir=folder, delete=False, encoding="utf-8") as file:
         file.write(text)

@@ -1,6 +1,6 @@
 """Actions that apply to all later nodes in the scope: namespaces, parameters and remappings.
 
-As in launch_ros, they are stored in launch configurations, so that they end with a group.
+As in launch_ros, these settings are stored in launch configurations, so that they end with a group.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ class PushRosNamespace(Action):
         return self._namespace
 
     def execute(self, context: LaunchContext) -> None:
-        """Push the namespace.
+        """Nest the current namespace, and store the result for later nodes.
 
         Raises:
             LinkwrightError: LAUNCH134, the namespace is not valid.
@@ -70,7 +70,10 @@ class PushRosNamespace(Action):
 
 @expose_action("set_parameter")
 class SetParameter(Action):
-    """Sets a parameter for all later nodes; a node's own value takes precedence."""
+    """Sets a parameter for all later nodes.
+
+    A node's own value takes precedence.
+    """
 
     def __init__(self, name: SomeSubstitutionsType, value: Any, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -94,11 +97,11 @@ class SetParameter(Action):
 
     @property
     def value(self) -> Any:
-        """The value, normalized."""
+        """The normalized value."""
         return next(iter(self._parameters.values()))
 
     def execute(self, context: LaunchContext) -> None:
-        """Set the parameter.
+        """Evaluate the parameter, and store it for later nodes.
 
         Raises:
             LinkwrightError: LAUNCH132, the errors in the value.
@@ -128,7 +131,7 @@ class SetParametersFromFile(Action):
         return self._filename
 
     def execute(self, context: LaunchContext) -> None:
-        """Set the parameters."""
+        """Store the parameter file for later nodes."""
         _append(context, PARAMETERS, perform_substitutions(context, self._filename))
 
 
@@ -199,7 +202,7 @@ class SetROSLogDir(Action):
     """Changes the log folder of processes that are started later.
 
     Args:
-        new_log_dir: the folder; a relative one is inside the previous folder.
+        new_log_dir: the folder; a relative path is inside the previous folder.
     """
 
     def __init__(self, new_log_dir: SomeSubstitutionsType, **kwargs: Any) -> None:
@@ -222,7 +225,7 @@ class SetROSLogDir(Action):
         """Change the log folder.
 
         Raises:
-            LinkwrightError: LAUNCH136, the previous folder is relative, too.
+            LinkwrightError: LAUNCH136, both the new and the previous folder are relative.
         """
         folder = Path(log_base(context.environment), perform_substitutions(context, self._log_dir))
         if not folder.is_absolute():

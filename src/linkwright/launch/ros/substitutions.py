@@ -38,13 +38,13 @@ class _LaunchRosSubstitution(DeclaredSubstitution):
 class FindPackage(_LaunchRosSubstitution, shown="{kind}(pkg={package})"):
     """The base class of substitutions for a folder of a package.
 
-    The operator ``/`` appends a path.
+    The operator ``/`` appends a path to the folder.
     """
 
     package: Texts = Texts()
 
     def find(self, package_name: str) -> str:
-        """Return the folder of a package."""
+        """Return the path of the folder of a package."""
         raise NotImplementedError
 
     def __truediv__(self, other: SomeSubstitutionsType) -> PathJoinSubstitution:
@@ -63,7 +63,7 @@ class FindPackagePrefix(FindPackage, tag="find-pkg-prefix"):
     """The install prefix of a package."""
 
     def find(self, package_name: str) -> str:
-        """Return the install prefix."""
+        """Return the install prefix of a package."""
         return str(install_prefix(current_finder().share(package_name)))
 
 
@@ -71,7 +71,7 @@ class FindPackageShare(FindPackage, tag="find-pkg-share"):
     """The share folder of a package."""
 
     def find(self, package_name: str) -> str:
-        """Return the share folder."""
+        """Return the share folder of a package."""
         return str(current_finder().share(package_name))
 
 
@@ -87,8 +87,8 @@ class ExecutableInPackage(
         """Return the path of the executable.
 
         Raises:
-            LinkwrightError: LAUNCH131, there is no such package or executable; the error is a SubstitutionFailure or of
-                a similar class, too, as in launch_ros.
+            LinkwrightError: LAUNCH131, there is no such package or executable. As in launch_ros, the error is also a
+                SubstitutionFailure or an instance of a similar class.
         """
         package = perform_substitutions(context, self.package)
         executable = perform_substitutions(context, self.executable)
@@ -108,7 +108,7 @@ class ParameterSubstitution(_LaunchRosSubstitution, tag="param", shown="Paramete
         """Return the value as text.
 
         Raises:
-            SubstitutionFailure: LAUNCH137, no such parameter was set, and there is no default.
+            SubstitutionFailure: LAUNCH137, no such parameter is set in the scope, and there is no default.
         """
         name = perform_substitutions(context, self.name)
         known = {

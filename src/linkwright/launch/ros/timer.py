@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 class RosTimer(TimerAction):
     """Visits actions once, after a period of ROS time.
 
-    The timer uses the time of the launcher's node. This node uses ``/clock`` once `SetUseSimTime` has been visited,
-    even if that happens after the timer starts.
+    The timer uses the clock of the launcher's node. This node follows ``/clock`` as soon as `SetUseSimTime` has been
+    visited, even if that happens after the timer starts.
     """
 
     def _schedule(self, context: LaunchContext) -> Schedule:
@@ -32,7 +32,7 @@ class RosTimer(TimerAction):
 
 
 class _OneShot:
-    """A node's timer that fires once."""
+    """A timer of a node that calls a function once."""
 
     def __init__(self, node: Node, seconds: float, due: Callable[[], None]) -> None:
         self._node = node

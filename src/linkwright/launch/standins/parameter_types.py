@@ -1,4 +1,4 @@
-"""The types of parameters and remappings that have names in ``launch_ros``."""
+"""The type aliases of ``launch_ros`` for parameters and remappings."""
 
 from __future__ import annotations
 

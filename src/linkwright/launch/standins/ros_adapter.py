@@ -96,7 +96,10 @@ class ROSAdapter:
 
 
 def get_ros_adapter(context: LaunchContext) -> ROSAdapter:
-    """Return the adapter of a launch, which is created on first use and ends with the launch."""
+    """Return the adapter of a launch.
+
+    The adapter is created on first use and shut down with the launch.
+    """
     try:
         adapter: ROSAdapter = context.locals.ros_adapter
     except AttributeError:

@@ -1,6 +1,6 @@
 """The actions and tags of ``ros_gz_sim`` and ``ros_gz_bridge``.
 
-They start a simulation, spawn models, and bridge topics.
+These actions start a simulation, spawn models, and bridge topics.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _CONTAINER = {"container_name": "ros_gz_container", "create_own_container": "Fal
 
 
 class _OneNode(Action, ABC):
-    """The base class of actions that start one node, which text options describe.
+    """The base class of actions that start a single node with text options.
 
     Args:
         kwargs: the options that `TEXTS` names, and the arguments of every action.
@@ -47,7 +47,7 @@ class _OneNode(Action, ABC):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Read the tag, whose attributes are the text options."""
+        """Read the attributes of the tag, which are the text options."""
         _, kwargs = super().parse(entity, parser)
         for name in cls.TEXTS:
             text = entity.get_attr(name, data_type=str, optional=True)
@@ -56,7 +56,7 @@ class _OneNode(Action, ABC):
         return cls, kwargs
 
     def execute(self, context: LaunchContext) -> list[Any]:
-        """Return the node to visit next."""
+        """Return the action that starts the node, to be visited next."""
         texts = {name: perform_substitutions(context, text) for name, text in self._texts.items()}
         node = self._node(texts)
         node.place = self.place
@@ -64,7 +64,7 @@ class _OneNode(Action, ABC):
 
     @abstractmethod
     def _node(self, texts: Mapping[str, str]) -> Node:
-        """Return the node that the text options describe."""
+        """Return the action that starts the node with evaluated text options."""
 
 
 def _text(value: Any) -> Any:
@@ -76,7 +76,7 @@ class GzServer(_OneNode):
     """Starts the simulation without a window.
 
     Args:
-        kwargs: ``world_sdf_file`` or ``world_sdf_string``; options for containers have no effect.
+        kwargs: ``world_sdf_file`` or ``world_sdf_string``. Options for containers have no effect.
     """
 
     TEXTS: ClassVar[Mapping[str, str]] = {"world_sdf_file": "", "world_sdf_string": "", **_CONTAINER}
@@ -111,13 +111,13 @@ class GzSpawnModel(_OneNode):
 
 @expose_action("ros_gz_bridge")
 class RosGzBridge(_OneNode):
-    """Starts a bridge between topics of the simulation and of ROS.
+    """Starts a bridge between topics of the simulation and topics of ROS.
 
     Args:
         bridge_name: the name of the node.
         config_file: the path of a YAML file with the topics to bridge.
         extra_bridge_params: further parameters, as for a `Node`.
-        kwargs: ``namespace`` and ``log_level``; options for containers and respawning have no effect.
+        kwargs: ``namespace`` and ``log_level``. Options for containers and respawning have no effect.
     """
 
     TEXTS: ClassVar[Mapping[str, str]] = {
@@ -143,7 +143,7 @@ class RosGzBridge(_OneNode):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Read the tag and the ``param`` tags inside."""
+        """Read the attributes of the tag and the ``param`` tags inside."""
         _, kwargs = super().parse(entity, parser)
         tags = entity.get_attr("param", data_type=Entities, optional=True)
         if tags:

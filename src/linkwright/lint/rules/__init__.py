@@ -1,1 +1,1 @@
-"""The lint rules, one module for each topic; the entry point ``linkwright.lint_rules`` names this package."""
+"""The lint rules, one module for each topic; the entry point ``linkwright.lint_rules``."""

@@ -23,7 +23,7 @@ def shapes_of(subject: Subject) -> Iterator[tuple[Link, Visual | Collision]]:
 def is_scenery(subject: Subject) -> bool:
     """Return whether the description is a single fixed object, such as a ground or a building.
 
-    Bullet treats a link of mass zero as immovable, and its planes, tables and terrains are written in this way.
+    Bullet treats a link of mass zero as immovable. Its planes, tables and terrains are such links.
     """
     links = list(subject.links)
     return len(links) == 1 and links[0].inertial is not None and links[0].inertial.mass == 0
@@ -35,7 +35,7 @@ def kind_of(shape: Visual | Collision) -> str:
 
 
 def sizes_of(geometry: Geometry) -> tuple[tuple[str, float], ...]:
-    """Return the lengths of a simple shape in m, each with its attribute; empty for a mesh."""
+    """Return the name and length in m of each size of a simple shape; empty for a mesh."""
     if isinstance(geometry, Mesh):
         return ()
     if isinstance(geometry, Box):
@@ -51,8 +51,8 @@ class NonPositiveSize(Rule):
     ## Why
 
     Below URDF 1.2, urdfdom accepts any number. RViz then shows nothing or a shape turned inside out, and physics
-    engines stop with an assertion. For a visual whose sizes are all zero, which some authors use as a marker, the
-    finding is an information.
+    engines stop with an assertion. If all sizes of a visual are zero, the finding is only an information, since some
+    authors use such visuals as markers.
 
     ## Example
 
@@ -100,8 +100,9 @@ class HugeSize(Rule):
 
     ## Why
 
-    URDF uses metres. In a file exported from CAD, a box of 400 is usually a box of 400 mm. A single link of mass zero
-    is scenery, such as a ground, and may be of any size.
+    URDF uses metres. In a file exported from CAD, a size of 400 usually means 400 mm. A robot of a single link with
+    mass
+    zero is scenery, such as a ground, and may be of any size.
 
     ## Example
 
@@ -146,8 +147,8 @@ class TinySize(Rule):
 
     ## Why
 
-    It is invisible, and contacts with it are noise. It is a placeholder, which should be removed, or a length that was
-    divided by a thousand twice.
+    Such a shape is invisible, and contacts with it are noise. It is a placeholder, which should be removed, or its
+    lengths were divided by a thousand twice.
 
     ## Example
 
@@ -192,7 +193,7 @@ class SeveralShapes(Rule):
 
     ## Why
 
-    Only the first one is read; the others are silently ignored.
+    Readers use only the first shape and silently ignore the others.
 
     ## Example
 
@@ -205,7 +206,7 @@ class SeveralShapes(Rule):
 
     ## Use instead
 
-    A `<visual>` or `<collision>` for each shape: a link may have as many as it needs.
+    Write a `<visual>` or `<collision>` for each shape. A link may have as many as it needs.
     """
 
     code = "LW404"
@@ -240,7 +241,7 @@ class ShapeFar(Rule):
 
     ## Why
 
-    URDF uses metres. An origin of several hundred is one in millimetres.
+    URDF uses metres. A position of several hundred is usually in millimetres.
 
     ## Example
 

@@ -31,10 +31,10 @@ class MissingCollision(Rule):
 
     ## Why
 
-    Planners and simulators let everything pass through it. Parts that fixed joints connect count as one, so a camera on
-    an arm does not need its own. The rule only applies if at least half of the moving parts have a collision shape. It
-    skips parts between two that have one: the hip of a leg often has none, because it is always close to its
-    neighbours.
+    In planners and simulators, everything passes through such a part. Links that fixed joints connect count as one
+    part, so a camera on an arm does not need its own collision shape. The rule only applies if at least half of the
+    moving parts have a collision shape. A part between two parts with collision shapes is not reported: the hip of a
+    leg often has none, because it is always close to its neighbours.
 
     ## Example
 
@@ -91,8 +91,8 @@ class MissingVisual(Rule):
 
     ## Why
 
-    A robot that hits objects with parts that RViz does not show is hard to understand. A missing visual is intended for
-    safety zones; otherwise it was forgotten.
+    A robot that hits objects with parts that RViz does not show is hard to understand. Safety zones have no visual on
+    purpose. On other links, the visual was probably forgotten.
 
     ## Example
 
@@ -104,7 +104,7 @@ class MissingVisual(Rule):
 
     ## Use instead
 
-    A `<visual>` with the same geometry.
+    Add a `<visual>` with the same geometry.
     """
 
     code = "LW411"
@@ -127,9 +127,9 @@ class CollisionApart(Rule):
 
     ## Why
 
-    The robot then collides in a different place than it is shown. Usually only one of the two has the `<origin>`. A
-    shape that was moved into the visuals of a child link is skipped: it represents a motor that is drawn there, as in
-    the hips of many quadrupeds.
+    The robot then collides at a different position than where it is shown. Usually, only the visual or only the
+    collision has the `<origin>`. A collision shape within the visuals of a child link is not reported: it represents a
+    motor that is drawn there, as in the hips of many quadrupeds.
 
     ## Example
 
@@ -145,7 +145,7 @@ class CollisionApart(Rule):
 
     ## Use instead
 
-    The same `<origin>` in both.
+    Write the same `<origin>` in the visual and the collision.
     """
 
     code = "LW412"
@@ -169,9 +169,9 @@ class CollisionApart(Rule):
 
 
 def _origin_hint(link: Link, seen: Bounds) -> Phrase:
-    """Return how to fix a collision shape that is away from its visual.
+    """Return a hint on how to fix a collision shape that is far from its visual.
 
-    If both have the same <origin>, the mesh is away from its own origin.
+    If both have the same ``<origin>``, the hint is about a mesh that is far from its own origin.
     """
     if link.visuals[0].origin.xyz != link.collisions[0].origin.xyz:
         return phrase("give visuals and collisions the same <origin>")
@@ -184,7 +184,8 @@ class CollisionSize(Rule):
 
     ## Why
 
-    One of the two lacks the `scale`, or a digit is missing. The robot stops metres before a wall, or runs half into it.
+    The visual or the collision lacks a `scale`, or a digit of a size is missing. The robot stops metres before a wall,
+    or runs half into it.
 
     ## Example
 
@@ -199,7 +200,7 @@ class CollisionSize(Rule):
 
     ## Use instead
 
-    The same `scale` in both.
+    Write the same `scale` in the visual and the collision.
     """
 
     code = "LW413"
@@ -230,7 +231,7 @@ class CollisionSize(Rule):
 
 
 def _is_moved_to_a_child(subject: Subject, link: Link, felt: Bounds) -> bool:
-    """Return whether a link's collision shapes were moved to the visuals of a link below it."""
+    """Return whether a link's collision shapes were moved to the visuals of a child link."""
     if not all(any(shape.origin.xyz) for shape in link.collisions) or link.name not in subject.frames:
         return False
     below = {joint.child for joint in subject.joints if joint.parent == link.name}
@@ -244,12 +245,15 @@ def _is_moved_to_a_child(subject: Subject, link: Link, felt: Bounds) -> bool:
 
 
 def _links_with_both_shapes(subject: Subject) -> Iterator[Link]:
-    """Return the links that have visuals and collisions."""
+    """Yield the links that have both visuals and collisions."""
     return (link for link in subject.links if link.visuals and link.collisions)
 
 
 def _comparable(subject: Subject) -> Iterator[tuple[Link, Bounds, Bounds]]:
-    """Yield links with the boxes of their visuals and collisions, except specks and meshes in millimetres."""
+    """Yield each link with comparable shapes, and the boxes of its visuals and collisions.
+
+    Links with tiny or unreadable shapes, or with meshes that are probably in millimetres, are left out.
+    """
     largest = math.inf if is_scenery(subject) else Millimetres().option(subject, "largest", float)
     for link in _links_with_both_shapes(subject):
         seen, felt = _bounds(subject, link.visuals), _bounds(subject, link.collisions)
@@ -263,7 +267,7 @@ def _comparable(subject: Subject) -> Iterator[tuple[Link, Bounds, Bounds]]:
 
 
 def _bounds(subject: Subject, shapes: Iterable[Visual | Collision]) -> Bounds | None:
-    """Return the box around shapes in the link frame; None if there are none, or one cannot be measured."""
+    """Return the box around shapes in the link frame; None if empty or not measurable."""
     from linkwright.geometry.shapes import union
 
     found = [subject.extents.shape_bounds(shape) for shape in shapes]

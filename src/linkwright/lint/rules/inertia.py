@@ -1,4 +1,4 @@
-"""Rules about masses: which links have one, and whether it is plausible."""
+"""Rules about masses: whether links have a mass, and whether it is plausible."""
 
 from __future__ import annotations
 
@@ -16,13 +16,16 @@ from linkwright.xmltree import Element
 
 
 def part(inertial: Inertial, tag: str) -> Element | None:
-    """Return a child of an ``<inertial>``, or the element itself if the child is missing."""
+    """Return a child of an ``<inertial>``, or the ``<inertial>`` itself if the child is missing.
+
+    The result is None if the inertial does not come from an element.
+    """
     element = inertial.element
     return (element.first(tag) or element) if element is not None else None
 
 
 def links_with_inertial(subject: Subject) -> Iterable[tuple[Link, Inertial]]:
-    """Yield the links that have an ``<inertial>``, each with its inertial."""
+    """Yield the links that have an ``<inertial>``, each with this inertial."""
     for link in subject.links:
         if link.inertial is not None:
             yield link, link.inertial
@@ -34,9 +37,9 @@ class MissingInertial(Rule):
     ## Why
 
     Gazebo drops a link without mass, together with the joint that moves it, and dynamics libraries treat it as
-    massless. A link fixed to another one needs no inertia, because simulators merge the two. Therefore, the rule checks
-    links that move as one together. If the robot is not for simulation, the finding on a link without shapes, such as
-    one that a driver commands, is an information.
+    massless. A link that is fixed to another link needs no inertia, because simulators merge the two. Therefore, the
+    rule checks links that move together as one body. If the robot is not for simulation, the finding on a link without
+    shapes is only an information, since a driver may command such a link.
 
     ## Example
 
@@ -62,7 +65,7 @@ class MissingInertial(Rule):
     </link>
     ```
 
-    `linkwright inertia FILE` computes the numbers from the link's shapes; with `--write` it adds them to the file.
+    `linkwright inertia FILE` computes the numbers from the link's shapes, and `--write` adds them to the file.
     """
 
     code = "LW301"
@@ -81,7 +84,7 @@ class MissingInertial(Rule):
             if body.joint is None or any(link.inertial for link in links):
                 continue
             if any(_is_broken(link) for link in links):
-                continue  # it exists but cannot be read, which is reported already
+                continue  # an inertial that cannot be read is reported by the reader
             element = links[0].element
             rest = [link.name for link in links[1:4]]
             notes = [Note(phrase("nor have the links fixed to it: {rest}", rest=quoted_names(rest)))] if rest else []
@@ -104,7 +107,7 @@ class ZeroMass(Rule):
     ## Why
 
     A body without mass cannot be simulated: simulators refuse it or drop the link. A link that is only a frame and is
-    fixed to one with a mass needs no mass, and is not reported.
+    fixed to a link with a mass needs no mass, and is not reported.
 
     ## Example
 
@@ -114,7 +117,7 @@ class ZeroMass(Rule):
 
     ## Use instead
 
-    The mass in kilograms; or no `<inertial>` at all on a link that is fixed to another one.
+    Write the mass in kilograms. For a link that is fixed to another link, the whole `<inertial>` may be omitted.
     """
 
     code = "LW302"
@@ -179,8 +182,8 @@ class TinyMass(Rule):
 
     ## Why
 
-    Solvers divide by masses. A joint that carries a milligram under one that carries kilograms makes a simulation
-    jitter or explode. Such masses are placeholders, or values in tonnes.
+    Solvers divide by masses. If one joint carries a milligram and a joint below it carries kilograms, the simulation
+    jitters or becomes unstable. Such masses are placeholders, or values in tonnes.
 
     ## Example
 
@@ -190,7 +193,8 @@ class TinyMass(Rule):
 
     ## Use instead
 
-    The mass of the part; for an auxiliary link of a joint with several axes, at least a thousandth of its load.
+    Write the mass of the part. For an auxiliary link of a joint with several axes, write at least a thousandth of the
+    load.
     """
 
     code = "LW304"
@@ -221,7 +225,7 @@ class HugeMass(Rule):
 
     ## Why
 
-    A hundred tonnes in one link result from a mass in grams, or from a misplaced decimal point.
+    If a single link has a hundred tonnes, the mass is usually in grams, or the decimal point is misplaced.
 
     ## Example
 
@@ -258,9 +262,9 @@ class RootInertia(Rule):
 
     ## Why
 
-    robot_state_publisher, MoveIt and all other programs that use kdl_parser warn about it at every start: KDL's root
-    segment has no inertia, so the one in the file is ignored. An empty root link above it, such as `base_footprint`,
-    solves the problem.
+    KDL's root segment cannot have an inertia, so the inertia in the file is ignored. robot_state_publisher, MoveIt and
+    all other programs that use kdl_parser print a warning at every start. An empty root link above the link, such as
+    `base_footprint`, solves the problem.
 
     ## Example
 
@@ -302,7 +306,7 @@ class RootInertia(Rule):
 
 
 def _is_frame(subject: Subject, link: Link) -> bool:
-    """Return whether a massless link is part of a body with mass, or an otherwise empty root."""
+    """Return whether a massless link is part of a body with mass or of a shapeless root body."""
     body = subject.bodies.of(link.name)
     if body is None:
         return False
@@ -313,7 +317,7 @@ def _is_frame(subject: Subject, link: Link) -> bool:
 
 
 def _is_scenery(subject: Subject, inertial: Inertial) -> bool:
-    """Return whether a single link is marked as immovable by zeros alone, as in Bullet."""
+    """Return whether the only link has zero inertia, which makes it immovable in Bullet."""
     return len(subject.links) == 1 and not any(getattr(inertial, name) for name in (*DIAGONAL, *PRODUCTS))
 
 

@@ -20,11 +20,11 @@ class PlaceholderInertia(Rule):
 
     ## Why
 
-    A tensor of ones on everything is a placeholder from a tutorial. For a link of a few hundred grams it is thousands
-    of times too large, and the robot moves far too sluggishly. The inertia depends on size and mass, so it cannot be
-    the same for all links. The rule only applies if at least half of the links share such a tensor; other rules then do
-    not report its size or the centre of mass. If a comment on the line or above it explains the value, the finding is
-    an information.
+    If all links have a tensor of ones, it is a placeholder from a tutorial. For a link of a few hundred grams, such a
+    tensor is thousands of times too large, and the robot moves far too sluggishly. The inertia depends on size and
+    mass, so it cannot be the same for all links. The rule only applies if at least half of the links share such a
+    tensor. Other rules then report neither the size of the tensor nor the centre of mass. If a comment on the line or
+    above it explains the value, the finding is an information.
 
     ## Example
 
@@ -36,7 +36,7 @@ class PlaceholderInertia(Rule):
 
     ## Use instead
 
-    A tensor for each link; `linkwright inertia FILE` computes them all.
+    Write a tensor for each link. `linkwright inertia FILE` computes all tensors.
     """
 
     code = "LW315"
@@ -73,7 +73,8 @@ def placeholders(subject: Subject) -> set[str]:
 def _shared_tensors(subject: Subject, least: int) -> Iterator[list[tuple[Link, Inertial]]]:
     """Yield groups of links that share a tensor of three equal moments, but differ in shape.
 
-    A group has at least `least` links and shapes, and at least half of all links with an inertia.
+    A group has at least `least` links with at least `least` different shapes, and at least half of all links with an
+    inertia.
     """
     groups: dict[tuple[float, ...], list[tuple[Link, Inertial]]] = {}
     for link, inertial in links_with_inertial(subject):
@@ -92,7 +93,7 @@ class TurnedSphere(Rule):
 
     ## Why
 
-    The rotation of `<inertial>` turns the tensor only, not the shapes, and a tensor with three equal moments and no
+    The rotation in `<inertial>` only rotates the tensor, not the shapes. A tensor with three equal moments and no
     products is the same in every orientation. The rotation was probably meant for something else.
 
     ## Example
@@ -137,7 +138,7 @@ class TinyInertia(Rule):
 
     ## Why
 
-    Integrators with steps of a millisecond become unstable if a joint turns a body with almost no inertia.
+    An integrator with steps of a millisecond becomes unstable if a joint rotates a body with almost no inertia.
 
     ## Example
 
@@ -147,7 +148,8 @@ class TinyInertia(Rule):
 
     ## Use instead
 
-    At least about 1e-8 kg m2, the inertia of a steel ball of 8 mm, and armature or damping at the joint.
+    Write at least about 1e-8 kg m2, which is the inertia of a steel ball with a diameter of 8 mm. Add armature or
+    damping at the joint.
     """
 
     code = "LW317"
@@ -175,5 +177,5 @@ class TinyInertia(Rule):
 
 
 def _shapes(link: Link) -> tuple[object, ...]:
-    """Return a key for the shapes of a link, which distinguishes different links from copies."""
+    """Return a key for the shapes of a link, which is the same for copies of a link."""
     return tuple(shape.geometry for shape in (link.collisions or link.visuals))

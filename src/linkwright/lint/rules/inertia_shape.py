@@ -46,13 +46,14 @@ class DensityTooHigh(Rule):
 
     ## Why
 
-    Osmium, the densest material, has 22 600 kg/m3. A denser link has a mass in grams, or shapes in a unit other than
-    metres. Meshes count with the whole box around them, so real parts are not reported. If links that are fixed to it
-    have shapes but no mass, its mass is compared with the box around all links that fixed joints connect.
+    Osmium, the densest material, has 22 600 kg/m3. If a link is denser, its mass is in grams, or its shapes are in a
+    unit other than metres. A mesh counts with the volume of its bounding box, so real parts are not reported. If links
+    that are fixed to the link have shapes but no mass, the mass is compared with the box around the whole body.
 
-    The finding is an information if a comment on the line or above it explains the value, as for ballast; up to ten
-    times the density of osmium for the base of the robot, which a large mass keeps in place; and up to three times for
-    a mass of one digit, such as 1 or 20: it is an estimate, and the unit is right.
+    The finding is only an information in three cases. A comment on the line or above it explains the value, as for
+    ballast. The link is part of the robot's base, which a large mass keeps in place, and has at most ten times the
+    density of osmium. The mass has one significant digit, such as 1 or 20, so it is an estimate, and the link has at
+    most three times the density of osmium.
 
     ## Example
 
@@ -82,7 +83,7 @@ class DensityTooHigh(Rule):
             if bounds is None or volume is None or bounds.diagonal <= MARKER or inertial.mass < _SLIP:
                 continue
             if min(bounds.size) < _ALMOST_NOTHING / 10:
-                continue  # a sheet, whose thickness is not meaningful
+                continue  # a sheet: its thickness is not meaningful
             if subject.bodies.includes_massless_links(link):
                 around = subject.extents.body_bounds(link)
                 if around is None:
@@ -113,7 +114,7 @@ class DensityTooHigh(Rule):
                 )
 
     def _tolerated(self, subject: Subject, link: Link, inertial: Inertial) -> float:
-        """Return how many times osmium's density a link may have without a mistake in its units."""
+        """Return the tolerated density of a link as a multiple of the density of osmium."""
         body = subject.bodies.of(link.name)
         if body is not None and body.joint is None:
             return _BALLAST
@@ -125,8 +126,8 @@ class DensityTooLow(Rule):
 
     ## Why
 
-    Air has 1.2 kg/m3. A lighter solid has a mass in tonnes, or shapes in millimetres or centimetres. Links that fixed
-    joints connect are evaluated as one body, by their collision shapes if they have any.
+    Air has a density of 1.2 kg/m3. If a solid is lighter, its mass is in tonnes, or its shapes are in millimetres or
+    centimetres. Links that fixed joints connect are evaluated as one body, by their collision shapes if they have any.
 
     ## Example
 
@@ -157,7 +158,7 @@ class DensityTooLow(Rule):
             heavy = [(link, link.inertial) for link in members if link.inertial is not None and link.inertial.mass > 0]
             shapes = [shape.geometry for link in members for shape in (link.collisions or link.visuals)]
             if not heavy or any(isinstance(geometry, Mesh) for geometry in shapes):
-                continue  # a frame of rods, for example as a mesh, fills little of its box
+                continue  # a frame of rods, for example as a mesh, fills little of its bounding box
             mass = bodies.mass(body)
             volume = sum(volume_of(geometry) for geometry in shapes if not isinstance(geometry, Mesh))
             if WEIGHTLESS <= mass < LIGHTEST_DENSITY * volume:
@@ -234,8 +235,9 @@ class CenterForgotten(Rule):
 
     ## Why
 
-    Without `<origin>` the centre of mass is at the origin of the link frame, which is at the joint. For an arm that
-    extends from the joint, this is at one end. The shape was moved, but the mass was forgotten.
+    Without `<origin>`, the centre of mass is at the origin of the link frame, which is at the joint. For an arm that
+    extends from the joint, the centre of mass is then at one end of the arm. Usually, the author moved the shape and
+    forgot the mass.
 
     ## Example
 
@@ -286,8 +288,9 @@ class InertiaTooLarge(Rule):
     ## Why
 
     A body with all of its mass in the farthest corner of its shapes would have the largest possible moment. A larger
-    one is in other units, such as kg mm2 or g mm2 of CAD programs, is about a point other than the centre of mass, or
-    is made up. The robot then turns far too sluggishly. Other rules report a tensor that is impossible for any body.
+    moment is in other units, such as kg mm2 or g mm2 of CAD programs, or refers to a point other than the centre of
+    mass, or is invented. The robot then rotates far too sluggishly. Other rules report tensors that are impossible for
+    any body.
 
     ## Example
 
@@ -347,9 +350,9 @@ class InertiaTooSmall(Rule):
 
     ## Why
 
-    All of the mass would have to be in a small part of the link. More often the tensor was computed for a smaller mass,
-    or with a size in other units. The smaller of the two boxes, around the collision shapes and around the visuals,
-    counts, since a visual mesh may extend beyond the body.
+    With such moments, all of the mass would have to be in a small part of the link. Usually, the tensor was computed
+    for a smaller mass, or with a size in other units. The rule uses the smaller of the boxes around the collision
+    shapes and around the visuals, since a visual mesh may extend beyond the body.
 
     ## Example
 
@@ -401,7 +404,7 @@ class InertiaTooSmall(Rule):
 
 
 def _without_placeholders(subject: Subject) -> Iterator[tuple[Link, Inertial, Bounds]]:
-    """Yield the measured links except those that `PlaceholderInertia` reports."""
+    """Yield the measured links except those whose tensor `PlaceholderInertia` reports."""
     copied = subject.once(placeholders) if subject.extents.measured else set()
     return (item for item in subject.extents.measured if item[0].name not in copied)
 
@@ -414,7 +417,10 @@ def _is_at_the_joint(subject: Subject, link: Link, inertial: Inertial) -> bool:
 
 
 def _is_origin_off_center(bounds: Bounds) -> bool:
-    """Return whether the origin is more than 0.45 of an edge from a box's middle: near a side or outside."""
+    """Return whether the origin is near a side of a box or outside it.
+
+    It is if its distance from the centre exceeds 0.45 of an edge.
+    """
     ends = zip(bounds.center, bounds.size, strict=True)
     return any(abs(middle) - 0.45 * size > _ALMOST_NOTHING for middle, size in ends)
 
@@ -423,18 +429,21 @@ _COMPUTE = phrase("`linkwright inertia` computes it from the link's shapes")
 
 
 def _largest_uniform_moment(bounds: Bounds, mass: float) -> float:
-    """Return the largest moment of a solid box of this mass about its middle, in kg m2."""
+    """Return the largest moment of a solid box of this mass about its centre, in kg m2."""
     squares = sorted(edge**2 for edge in bounds.size)
     return mass * (squares[1] + squares[2]) / 12
 
 
 def _is_made_up(inertial: Inertial) -> bool:
-    """Return whether a tensor is one round number three times, such as 1 1 1, so that no unit explains it."""
+    """Return whether a tensor consists of the same round number three times, such as 1 1 1.
+
+    No wrong unit explains such a tensor.
+    """
     return inertial.ixx == inertial.iyy == inertial.izz == float(f"{inertial.ixx:.0e}")
 
 
 def _unit_hint(ratio: float) -> Phrase | None:
-    """Return a hint if the error of a value matches the ratio of two units within a factor of 3."""
+    """Return a hint if an error matches the ratio of two units within a factor of 3, or None."""
     factor, unit = min(_UNITS, key=lambda item: max(item[0] / ratio, ratio / item[0]))
     if max(factor / ratio, ratio / factor) > 3:
         return None

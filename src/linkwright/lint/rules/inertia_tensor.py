@@ -1,4 +1,4 @@
-"""Rules about inertia tensors alone: whether any body can have them."""
+"""Rules about inertia tensors alone: whether a tensor is possible for any body."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from linkwright.urdf import Inertial, Link
 
 
 class _FlawRule(Rule):
-    """The base of rules about one kind of flaw of inertia tensors."""
+    """The base class of rules about one kind of flaw of inertia tensors."""
 
     kind = ""
 
@@ -25,7 +25,7 @@ class _FlawRule(Rule):
 
 
 class _TensorRule(_FlawRule, ABC):
-    """The base of rules that report each flaw of their kind."""
+    """The base class of rules that report each flaw of one kind."""
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         for link, inertial, flaw in self.flawed(subject):
@@ -53,7 +53,7 @@ class ZeroInertia(_FlawRule):
 
     ## Use instead
 
-    The tensor of the shape; `linkwright inertia FILE` computes it.
+    Write the tensor of the shape. `linkwright inertia FILE` computes it.
     """
 
     code = "LW310"
@@ -85,8 +85,8 @@ class NonPositiveMoment(_TensorRule):
 
     ## Why
 
-    A moment is the sum of masses times squared distances. It is positive for every body that has an extent. Solvers
-    that divide by it fail.
+    A moment is the sum of masses times squared distances, which is positive for every body that has an extent. Solvers
+    divide by the moment and fail.
 
     ## Example
 
@@ -121,9 +121,8 @@ class ExcessiveProduct(_TensorRule):
 
     ## Why
 
-    |ixy| can exceed neither half of izz nor the square root of ixx times iyy, and likewise for the other products. A
-    larger
-    product is a mistake: a moment in the place of a product, or one component in other units.
+    |ixy| can exceed neither half of izz nor the square root of ixx times iyy. The same holds for the other products. A
+    larger product is a mistake, such as a moment in place of a product, or a component in other units.
 
     ## Example
 
@@ -165,9 +164,10 @@ class IndefiniteInertia(_TensorRule):
 
     ## Why
 
-    About some axis the moment is negative, which is impossible. Gazebo and Drake refuse it, other simulators fail at
-    the first contact. Usually the products have a wrong sign, or refer to a different point than the moments. A thin
-    body whose smallest moment is negative only because the file has few digits is not reported.
+    The moment about some axis is negative, which is impossible. Gazebo and Drake refuse such a tensor, and other
+    simulators fail at the first contact. Usually, the products have a wrong sign, or refer to a different point than
+    the moments. If the smallest moment of a thin body is negative only because of rounding in the file, the tensor is
+    not reported.
 
     ## Example
 
@@ -177,7 +177,8 @@ class IndefiniteInertia(_TensorRule):
 
     ## Use instead
 
-    The tensor about the centre of mass, with all components from one source; `linkwright inertia FILE` computes one.
+    Write the tensor about the centre of mass, with all components from one source. `linkwright inertia FILE` computes
+    such a tensor.
     """
 
     code = "LW313"

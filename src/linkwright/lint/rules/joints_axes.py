@@ -25,8 +25,9 @@ class AxisZero(Rule):
 
     ## Why
 
-    It has no direction to move in. urdfdom reads it; robot_state_publisher then does not move the joint, and simulators
-    refuse the model or produce NaN. `<axis/>` without `xyz` is also 0 0 0, not the default 1 0 0.
+    The joint has no direction in which to move. urdfdom accepts the axis, but robot_state_publisher then does not move
+    the joint, and simulators refuse the model or produce NaN. `<axis/>` without `xyz` is also 0 0 0, not the default 1
+    0 0.
 
     ## Example
 
@@ -76,8 +77,8 @@ class AxisNotUnit(Rule):
 
     ## Why
 
-    The axis is a direction. Some consumers normalise it, others take its length as a factor: urdfdom passes it on
-    unchanged, and code that rotates by `angle * axis` then rotates too far.
+    The axis is a direction, which urdfdom passes on unchanged. Some consumers normalise the axis. Others use its length
+    as a factor: code that rotates by `angle * axis` then rotates by a wrong angle.
 
     ## Example
 
@@ -91,7 +92,7 @@ class AxisNotUnit(Rule):
     <axis xyz="0.707107 0.707107 0"/>
     ```
 
-    `linkwright check --fix` writes it.
+    `linkwright check --fix` normalises the axis.
     """
 
     code = "LW221"
@@ -127,8 +128,8 @@ class AxisImplicit(Rule):
 
     ## Why
 
-    It turns about x, which few joints do: a wheel without an axis turns about the direction of travel. Prismatic joints
-    often move along x, and are not reported.
+    The joint rotates about x, which is seldom intended: a wheel without an axis rotates about the direction of travel.
+    Prismatic joints often move along x, so they are not reported.
 
     ## Example
 
@@ -145,7 +146,7 @@ class AxisImplicit(Rule):
       <axis xyz="0 1 0"/>
     ```
 
-    Write `<axis xyz="1 0 0"/>` where x is meant.
+    If x is intended, write `<axis xyz="1 0 0"/>`.
     """
 
     code = "LW222"
@@ -166,7 +167,10 @@ class AxisImplicit(Rule):
 
 
 def _is_locked(joint: Joint) -> bool:
-    """Return whether the limits leave the joint no range of motion, which LW202 reports."""
+    """Return whether the limits leave the joint no range of motion.
+
+    `LimitEmpty` (LW202) reports such a joint.
+    """
     return joint.type == "revolute" and joint.limit is not None and joint.limit.lower == joint.limit.upper
 
 
@@ -175,7 +179,7 @@ class AxisOnFixed(Rule):
 
     ## Why
 
-    The axis is not read. It is harmless and often written by macros, so the rule is off by default.
+    Readers ignore the axis. Macros often write it for every joint, which is harmless, so the rule is off by default.
 
     ## Example
 
@@ -186,7 +190,7 @@ class AxisOnFixed(Rule):
 
     ## Use instead
 
-    Remove the `<axis>`, or give the joint the type it was written for.
+    Remove the `<axis>`, or give the joint the type for which the axis was written.
     """
 
     code = "LW223"
@@ -195,7 +199,7 @@ class AxisOnFixed(Rule):
     default = False
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every axis that is not read."""
+        """Report every axis of a fixed or floating joint, which readers ignore."""
         for joint, _, axis in parts(subject, "axis"):
             if joint.type in ("fixed", "floating"):
                 yield self.report(
@@ -211,8 +215,8 @@ class AxisTilted(Rule):
 
     ## Why
 
-    `0 0.01 1` and `1 6.1e-17 0` come from exporters that rotate numerically. The joint then moves in a plane that is
-    slightly off, and inverse kinematics that needs parallel axes finds no solution.
+    Axes such as `0 0.01 1` and `1 6.1e-17 0` come from exporters that rotate numerically. The joint then moves in a
+    slightly tilted plane, and inverse kinematics that requires parallel axes finds no solution.
 
     ## Example
 
@@ -265,8 +269,8 @@ class JointNotPublished(Rule):
 
     ## Why
 
-    robot_state_publisher ignores a floating joint, so its two frames are not connected unless another node does this.
-    It treats a planar joint as fixed.
+    robot_state_publisher ignores a floating joint, so its two frames are connected only if another node broadcasts the
+    transform. robot_state_publisher treats a planar joint as fixed.
 
     ## Example
 
@@ -276,8 +280,8 @@ class JointNotPublished(Rule):
 
     ## Use instead
 
-    Let the node that knows the pose (odometry, localisation, simulator) broadcast the transform and leave the joint
-    out of the description, or build a planar motion from two prismatic joints and a continuous one.
+    Leave the joint out of the description, and let the node that knows the pose (odometry, localisation, simulator)
+    broadcast the transform. A planar motion can also be built from two prismatic joints and a continuous one.
     """
 
     code = "LW225"

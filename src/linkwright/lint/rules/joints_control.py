@@ -23,9 +23,9 @@ class SoftLimitsOutside(Rule):
 
     ## Why
 
-    A safety controller begins to act at the soft limits, to stop the joint before the limits. If they are outside the
-    limits, it never acts. A soft limit that is slightly beyond only one end is not reported: grippers that press on an
-    object, such as PR2's, leave that end to the mechanical stop.
+    A safety controller begins to act at the soft limits, so that the joint stops before its limits. If the soft limits
+    are outside the limits, the controller never acts. A soft limit slightly beyond only one of the limits is not
+    reported: grippers that press on an object, such as those of the PR2, rely on the mechanical stop at this end.
 
     ## Example
 
@@ -89,7 +89,7 @@ class SoftLimitsInverted(Rule):
 
     ## Why
 
-    There is no position at which the safety controller leaves the joint alone.
+    There is no position at which the safety controller does not act on the joint.
 
     ## Example
 
@@ -111,7 +111,7 @@ class SoftLimitsInverted(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every pair of soft limits without a range between them.
 
-        Soft limits that are not given are both 0, which means that there are none.
+        If no soft limits are given, both are 0 and have no effect.
         """
         for joint, _, safety in parts(subject, "safety_controller"):
             soft = joint.safety
@@ -212,7 +212,7 @@ class DynamicsNegative(Rule):
     severity = Severity.ERROR
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every damping and friction below 0."""
+        """Report every negative damping or friction."""
         for joint, _, dynamics in parts(subject, "dynamics"):
             for name in ("damping", "friction"):
                 size = value(dynamics, name)
@@ -239,8 +239,8 @@ class DynamicsOnFixed(Rule):
 
     ## Why
 
-    A fixed joint does not move, so the element has no effect. Macros write it for every joint, so the rule is off by
-    default.
+    A fixed joint does not move, so the element has no effect. Some macros write it for every joint, which is harmless,
+    so the rule is off by default.
 
     ## Example
 
@@ -276,8 +276,8 @@ class CalibrationOutside(Rule):
 
     ## Why
 
-    The joint can never reach the position where its reference signal changes, so a calibration never ends. Nothing in
-    ROS 2 reads the position, so the rule is off by default.
+    The joint can never reach the position where its reference signal changes, so a calibration never ends. ROS 2 does
+    not use the calibration position, so the rule is off by default.
 
     ## Example
 

@@ -13,7 +13,7 @@ from linkwright.lint.walk import BOUNDED, bounds, format_number, is_for_simulati
 
 
 class _ZeroLimitRule(Rule):
-    """The base of the rules about a joint whose `effort` or `velocity` is zero."""
+    """The base class of the rules about an `effort` or `velocity` of zero."""
 
     attribute: str
     consequence: str
@@ -30,7 +30,7 @@ class _ZeroLimitRule(Rule):
         for joint, limit in limits(subject, *BOUNDED, "continuous"):
             ends = bounds(limit)
             if ends is not None and ends[0] == ends[1] and joint.type in BOUNDED:
-                continue  # it cannot move in any case, which LW202 reports
+                continue  # a joint without a range cannot move in any case; LW202 reports it
             if joint.mimic is None and joint.name not in springs and value(limit, self.attribute) == 0:
                 yield self.report(
                     phrase(
@@ -50,9 +50,9 @@ class EffortZero(_ZeroLimitRule):
 
     ## Why
 
-    Simulators apply the limit: the joint has no torque, so it hangs limp or does not move. The rule skips a joint that
-    mimics another or that a spring moves in Gazebo, and descriptions without elements for a simulator: manufacturers
-    write 0 for an effort that they do not publish.
+    Simulators apply the limit: the joint has no torque, so it hangs limp or does not move. Joints that mimic another
+    joint, or that a spring moves in Gazebo, are not reported. Neither are descriptions without elements for a
+    simulator, because manufacturers write 0 for an effort that they do not publish.
 
     ## Example
 
@@ -77,8 +77,8 @@ class VelocityZero(_ZeroLimitRule):
 
     ## Why
 
-    The joint is not allowed to move at all. MoveIt cannot time a trajectory through it, and controllers hold it still.
-    A joint that mimics another, or that a spring moves in Gazebo, is not reported.
+    The joint is not allowed to move at all. MoveIt cannot compute the timing of a trajectory with this joint, and
+    controllers hold the joint in place. A joint that mimics another, or that a spring moves in Gazebo, is not reported.
 
     ## Example
 
@@ -98,13 +98,13 @@ class VelocityZero(_ZeroLimitRule):
 
 
 class _NegativeLimitRule(Rule):
-    """The base of the rules about a joint whose `effort` or `velocity` is negative."""
+    """The base class of the rules about a negative `effort` or `velocity`."""
 
     attribute: str
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         if subject.robot is not None and subject.robot.version >= (1, 2):
-            return  # the reader reports it
+            return  # the reader reports negative limits in files of URDF 1.2
         for joint, _, limit in parts(subject, "limit"):
             size = value(limit, self.attribute)
             if size is not None and size < 0:
@@ -130,8 +130,8 @@ class EffortNegative(_NegativeLimitRule):
 
     ## Why
 
-    `effort` is a magnitude for both directions. A negative one allows no effort at all, and simulators treat it
-    differently. urdfdom accepts it. In SDF, -1 means "no limit", but URDF has no such value.
+    `effort` is a magnitude for both directions, so a negative value allows no effort at all. urdfdom accepts the value,
+    and each simulator treats it differently. In SDF, -1 means "no limit", but URDF has no such value.
 
     ## Example
 
@@ -157,8 +157,8 @@ class VelocityNegative(_NegativeLimitRule):
 
     ## Why
 
-    `velocity` is a magnitude for both directions; a negative one allows no speed. MoveIt refuses to time trajectories
-    with it.
+    `velocity` is a magnitude for both directions, so a negative value allows no motion. MoveIt refuses to compute the
+    timing of trajectories with such a limit.
 
     ## Example
 
@@ -185,8 +185,8 @@ class VelocityInDegrees(Rule):
 
     ## Why
 
-    Speeds are in rad/s. 180 rad/s are 1700 revolutions per minute. An arm joint that is planned with this limit moves
-    as fast as the controller allows.
+    Speeds are in rad/s, and 180 rad/s is about 1700 revolutions per minute. If an arm joint is planned with this limit,
+    it moves as fast as the controller allows.
 
     ## Example
 
@@ -206,9 +206,9 @@ class VelocityInDegrees(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every revolute joint whose velocity is a round number from 45 to 720.
+        """Report every revolute joint whose velocity limit is a round number from 45 to 720.
 
-        No motor drives such a joint at this speed.
+        No motor drives such a joint at this speed in rad/s.
         """
         for joint, limit in limits(subject, "revolute"):
             speed = value(limit, "velocity")

@@ -1,4 +1,4 @@
-"""Rules about joints that follow others (``<mimic>``)."""
+"""Rules about joints that follow another joint (``<mimic>``)."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _SLACK = 1e-3
 
 
 def _followers(subject: Subject) -> Iterator[tuple[Joint, Element]]:
-    """Yield the joints that follow another, each with its ``<mimic>``."""
+    """Yield the joints that follow another joint, each with its ``<mimic>`` element."""
     for joint, element in joints(subject):
         mimic = element.first("mimic")
         if joint.mimic is not None and mimic is not None:
@@ -28,7 +28,7 @@ def _followers(subject: Subject) -> Iterator[tuple[Joint, Element]]:
 
 
 def _pairs(subject: Subject) -> Iterator[tuple[Joint, Joint, Element]]:
-    """Yield follower, leader and ``<mimic>`` where the leader exists and is a different joint."""
+    """Yield each follower with its leader and ``<mimic>``, if the leader is another joint."""
     by_name = {joint.name: joint for joint in subject.joints}
     for joint, mimic in _followers(subject):
         leader = by_name.get(mimic.attributes["joint"])
@@ -41,8 +41,8 @@ class MimicOnFixed(Rule):
 
     ## Why
 
-    A fixed joint does not move, whatever it follows. Usually, the type was changed and the rest was forgotten. A type
-    from a xacro expression may differ in another expansion, and is not reported.
+    A fixed joint does not move, whatever it follows. Usually, the author changed the type and forgot the `<mimic>`. If
+    the type comes from a xacro expression, it may differ in another expansion, so the joint is not reported.
 
     ## Example
 
@@ -79,7 +79,7 @@ class MimicOfFixed(Rule):
 
     ## Why
 
-    The followed joint has no position, so the joint never moves; simulators refuse such a constraint.
+    The followed joint has no position, so the follower never moves. Simulators refuse such a constraint.
 
     ## Example
 
@@ -89,7 +89,7 @@ class MimicOfFixed(Rule):
 
     ## Use instead
 
-    Name a joint that moves, or make this one fixed, too.
+    Name a joint that moves, or make the follower fixed, too.
     """
 
     code = "LW231"
@@ -155,8 +155,8 @@ class MimicBeyondLimits(Rule):
 
     ## Why
 
-    Nothing stops the follower at its limits when the other joint moves further: RViz shows it beyond them, and in a
-    simulator both joints jam.
+    Nothing stops the follower at its limits when the other joint moves further. RViz shows the follower beyond its
+    limits, and in a simulator both joints jam.
 
     ## Example
 
@@ -168,8 +168,8 @@ class MimicBeyondLimits(Rule):
 
     ## Use instead
 
-    Set the limits to those of the other joint, times the multiplier, plus the offset; for a negative multiplier, swap
-    them.
+    Compute each limit from the limit of the other joint, times the multiplier, plus the offset. For a negative
+    multiplier, swap the two limits.
     """
 
     code = "LW233"
@@ -212,8 +212,8 @@ class MimicChain(Rule):
 
     ## Why
 
-    joint_state_publisher follows the chain; robot_state_publisher, given only the first joint's position, moves the
-    second but not the third. Simulators and ros2_control refuse it.
+    joint_state_publisher follows the chain. robot_state_publisher, if it only receives the first joint's position,
+    moves the second joint but not the third. Simulators and ros2_control refuse the chain.
 
     ## Example
 
@@ -238,7 +238,7 @@ class MimicChain(Rule):
                 continue
             first = by_name.get(leader.mimic.joint)
             if first is None or first.mimic is not None:
-                continue  # unknown, part of a cycle, or higher in a chain, where it is reported
+                continue  # not found, or itself a follower: then the cycle or the joint above is reported
             factor = joint.mimic.multiplier * leader.mimic.multiplier
             offset = joint.mimic.multiplier * leader.mimic.offset + joint.mimic.offset
             yield self.report(
@@ -265,7 +265,8 @@ class MimicOtherKind(Rule):
 
     ## Why
 
-    Without a multiplier one radian becomes one metre. A rack that follows its pinion needs the pinion's radius.
+    Without a multiplier, one radian becomes one metre. For a rack that follows its pinion, the multiplier is the
+    pinion's radius.
 
     ## Example
 
@@ -285,7 +286,7 @@ class MimicOtherKind(Rule):
     name = "mimic-other-kind"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every follower of a joint of the other kind with multiplier 1."""
+        """Report every follower with multiplier 1 if only one of the two joints is prismatic."""
         for joint, leader, mimic in _pairs(subject):
             turns = joint.type in _TURNING and leader.type in _SLIDING
             slides = joint.type in _SLIDING and leader.type in _TURNING
@@ -312,8 +313,8 @@ class MimicDrivenByControl(Rule):
 
     ## Why
 
-    The joint has two masters: the hardware or simulator has to follow the other joint and to obey the commands.
-    ros2_control refuses such a joint when it loads the description.
+    The joint receives two commands: the hardware or simulator must follow the other joint and also obey the command
+    interface. ros2_control refuses such a joint when it loads the description.
 
     ## Example
 
@@ -357,7 +358,7 @@ class MimicDrivenByControl(Rule):
 
 
 def _range(joint: Joint) -> tuple[float, float] | None:
-    """Return the range of positions of a joint, in rad or m; None if it has no bounds or an invalid range."""
+    """Return the range of positions of a joint in rad or m; None if it is missing or invalid."""
     if joint.type not in ("revolute", "prismatic") or joint.limit is None:
         return None
     lower, upper = joint.limit.lower, joint.limit.upper

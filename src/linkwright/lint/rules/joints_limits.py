@@ -24,8 +24,8 @@ class LimitInverted(Rule):
 
     ## Why
 
-    There is no position between them. Below URDF 1.2, urdfdom accepts this without a warning. Planners then refuse
-    every configuration, simulators apply one of the bounds or none, and sliders have no range.
+    There is no position between the limits. Below URDF 1.2, urdfdom accepts such limits without a warning. Planners
+    then refuse every configuration, simulators apply one of the bounds or none, and sliders have no range.
 
     ## Example
 
@@ -46,7 +46,7 @@ class LimitInverted(Rule):
     severity = Severity.ERROR
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every bounded joint with inverted limits; the reader checks URDF 1.2 files."""
+        """Report every bounded joint with inverted limits; for URDF 1.2, the reader does."""
         if subject.robot is not None and subject.robot.version >= (1, 2):
             return
         for joint, limit in limits(subject, *BOUNDED):
@@ -81,9 +81,10 @@ class LimitEmpty(Rule):
 
     ## Why
 
-    It cannot move. joint_state_publisher_gui gives it no slider and planners treat it as fixed, at the cost of a joint
-    that moves. If the names show that it holds a sensor at 0, the finding is an information: Gazebo merges a link on a
-    fixed joint with its parent, and such a joint preserves the link of the sensor.
+    Such a joint cannot move. joint_state_publisher_gui shows no slider for it, and planners treat it as fixed, at the
+    cost of a moving joint. If the names show that the joint holds a sensor at 0, the finding is only an information:
+    Gazebo merges a link on a fixed joint with its parent, and a joint with equal limits preserves the link of the
+    sensor.
 
     ## Example
 
@@ -126,7 +127,7 @@ class LimitBoundsMissing(Rule):
 
     ## Why
 
-    A missing bound is 0, so the joint cannot leave 0. In RViz its slider has no range.
+    A missing bound is 0, so the joint cannot leave position 0. Its slider has no range.
 
     ## Example
 
@@ -141,7 +142,7 @@ class LimitBoundsMissing(Rule):
       <limit lower="-1.57" upper="1.57" effort="10" velocity="1"/>
     ```
 
-    A joint that turns without bounds has `type="continuous"`.
+    A joint that rotates without bounds has `type="continuous"`.
     """
 
     code = "LW203"
@@ -149,7 +150,7 @@ class LimitBoundsMissing(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every bounded joint without bounds; for URDF 1.2 files, the reader reports them."""
+        """Report every joint with a ``<limit>`` without bounds; for URDF 1.2 files, the reader does."""
         if subject.robot is not None and subject.robot.version >= (1, 2):
             return
         for joint, limit in limits(subject, *BOUNDED):
@@ -176,8 +177,8 @@ class LimitOneBound(Rule):
 
     ## Why
 
-    The other one is 0, which is not visible in the file. The rule is off by default, because grippers are often written
-    in this way.
+    The missing bound is 0, which is not visible in the file. The limits of grippers are often written in this way, so
+    the rule is off by default.
 
     ## Example
 
@@ -222,8 +223,8 @@ class LimitOnContinuous(Rule):
 
     ## Why
 
-    A continuous joint turns without bounds: urdfdom reads the limits and every consumer ignores them. The author
-    expects the joint to stop there.
+    A continuous joint rotates without bounds: urdfdom reads the limits, but every consumer ignores them. The author,
+    however, probably expects the joint to stop at the limits.
 
     ## Example
 
@@ -243,13 +244,13 @@ class LimitOnContinuous(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every continuous joint with a range that its author may rely on."""
+        """Report every continuous joint with a limited range on which its author may rely."""
         for joint, limit in limits(subject, "continuous"):
             ends = bounds(limit)
             if ends is None or ends[0] == ends[1] or max(abs(ends[0]), abs(ends[1])) > UNBOUNDED:
                 continue
             if ends[1] - ends[0] >= 2 * pi - 0.02:
-                continue  # a full turn, which covers all positions
+                continue  # a full turn covers all positions
             yield self.report(
                 phrase(
                     "continuous joint '{name}' has limits from {ends} to {other_ends}, which nothing enforces",
@@ -268,8 +269,8 @@ class LimitOnFixed(Rule):
 
     ## Why
 
-    A fixed joint does not move, so the limit has no effect. Often, the type is a leftover from a test. A limit that a
-    xacro macro writes for every joint type is harmless, so the rule is off by default.
+    A fixed joint does not move, so the limit has no effect. Often, the joint was made fixed for a test and not changed
+    back. Some xacro macros write a limit for every joint type, which is harmless, so the rule is off by default.
 
     ## Example
 
@@ -280,7 +281,7 @@ class LimitOnFixed(Rule):
 
     ## Use instead
 
-    Remove the `<limit>`, or give the joint the type it was written for.
+    Remove the `<limit>`, or give the joint the type for which the limit was written.
     """
 
     code = "LW210"
@@ -304,8 +305,8 @@ class ZeroOutsideLimits(Rule):
 
     ## Why
 
-    RViz and joint_state_publisher show such a joint in the middle of its range. Simulators start it at 0 and push it
-    into its range with a jolt. This is not a mistake, so the rule is off by default.
+    RViz and joint_state_publisher start with such a joint in the middle of its range. Simulators start it at 0 and push
+    it into its range with a jolt. A range without 0 is not a mistake, so the rule is off by default.
 
     ## Example
 

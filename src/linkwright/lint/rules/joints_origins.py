@@ -21,8 +21,8 @@ class OriginFar(Rule):
 
     ## Why
 
-    Lengths are in metres. An arm whose elbow is 400 m from its shoulder was exported in millimetres; RViz shows nothing
-    where the robot should be. The position of a robot in its `world` is not checked.
+    Lengths are in metres. If an elbow is 400 m from its shoulder, the arm was exported in millimetres, and RViz shows
+    nothing at the expected position. The position of a robot in its `world` is not checked.
 
     ## Example
 
@@ -70,7 +70,7 @@ class AngleInDegrees(Rule):
 
     ## Why
 
-    Angles are in radians; 22.5 rad are three and a half turns. The URDF reader reports multiples of 5 (URDF190).
+    Angles are in radians, and 22.5 rad is three and a half turns. The URDF reader reports multiples of 5 (URDF190).
 
     ## Example
 
@@ -115,8 +115,8 @@ class AngleRounded(Rule):
 
     ## Why
 
-    `1.57` is off by 0.046 degrees: half a millimetre at the end of an arm of 70 cm, and frames that should be parallel
-    are not. It is seldom worth a warning, so the rule is off by default.
+    `1.57` is off by 0.046 degrees, which is half a millimetre at the end of an arm of 70 cm. Frames that should be
+    parallel are slightly tilted. The error seldom matters, so the rule is off by default.
 
     ## Example
 
@@ -140,7 +140,7 @@ class AngleRounded(Rule):
     default = False
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every angle within a few thousandths of a simple fraction of pi, but not given to six digits."""
+        """Report every angle that is a simple fraction of pi, rounded to two to five decimal places."""
         for owner, origin in _origins(subject):
             written = origin.attributes.get("rpy", "").split()
             if len(values(origin, "rpy")) != 3 or len(written) != 3:
@@ -167,8 +167,8 @@ class OriginMissing(Rule):
 
     ## Why
 
-    The two frames coincide, so the shapes of both links overlap. Sometimes this is intended, so the rule is off by
-    default.
+    The frames of the two links coincide, so their shapes overlap. Sometimes the overlap is intended, so the rule is off
+    by default.
 
     ## Example
 
@@ -215,7 +215,7 @@ _DECIMAL = lazy_pattern(r"[+-]?[0-9]+\.[0-9]{2,5}")
 
 
 def _pi_fraction(word: str) -> str | None:
-    """Return the fraction of pi that a rounded number approximates, with its sign, or None."""
+    """Return the exact value of the fraction of pi that a rounded number approximates, or None."""
     if not _DECIMAL.fullmatch(word):
         return None
     angle = float(word)

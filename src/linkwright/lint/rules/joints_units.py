@@ -18,8 +18,8 @@ class LimitInDegrees(Rule):
 
     ## Why
 
-    Angles are in radians. 170.5 rad are 27 turns: sliders become useless, and planners search a space that does not
-    exist. The URDF reader reports multiples of 5 (URDF190).
+    Angles are in radians. 170.5 rad is 27 turns: sliders become useless, and planners search positions that the joint
+    cannot reach. The URDF reader reports multiples of 5 (URDF190).
 
     ## Example
 
@@ -115,8 +115,8 @@ class LimitInMillimetres(Rule):
 
     ## Why
 
-    Lengths are in metres. A travel of 120 m is usually one of 120 mm, copied from a data sheet. Limits such as -100 and
-    100 are not reported: they mean no limits.
+    Lengths are in metres. A travel of 120 m is usually 120 mm, copied from a data sheet. Limits such as -100 and 100
+    are not reported, because they mean that there are no limits.
 
     ## Example
 
@@ -143,7 +143,7 @@ class LimitInMillimetres(Rule):
         for joint, limit in limits(subject, "prismatic"):
             ends = bounds(limit)
             if ends is not None and -ends[0] == ends[1] > 0 and log10(ends[1]).is_integer():
-                continue  # such as -100 to 100, which means no limits
+                continue  # limits such as -100 to 100 mean that there are no limits
             for name in ("lower", "upper"):
                 way = value(limit, name)
                 if way is not None and longest < abs(way) <= 10 * UNBOUNDED:

@@ -1,4 +1,7 @@
-"""Rules about Python launch files and the files that they name. Launch files are read, never run."""
+"""Rules about Python launch files and the files that they name.
+
+Launch files are parsed but never executed.
+"""
 
 from __future__ import annotations
 
@@ -27,10 +30,10 @@ _COMMENT = lazy_pattern(r"#.*")
 
 
 class LaunchRule(PackageRule):
-    """A rule about one launch file."""
+    """The base class of rules that check each launch file of a package."""
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """Yield the findings in a package."""
+        """Yield the findings in all launch files of a package."""
         for file in package.launch_files.values():
             yield from self.check_launch(file)
 
@@ -44,7 +47,7 @@ class LaunchSyntaxError(LaunchRule):
 
     ## Why
 
-    It cannot be launched.
+    `ros2 launch` cannot run a file with a syntax error.
 
     ## Example
 
@@ -70,7 +73,7 @@ class LaunchSyntaxError(LaunchRule):
     severity = Severity.ERROR
 
     def check_launch(self, file: LaunchFile) -> Iterator[Diagnostic]:
-        """Yield the findings in a launch file."""
+        """Yield a finding if a launch file has a syntax error."""
         if file.error is not None:
             message = phrase(
                 "the launch file '{path}' is not Python: {message}", path=file.path, message=foreign(file.error.message)
@@ -83,9 +86,9 @@ class LaunchFunctionMissing(LaunchRule):
 
     ## Why
 
-    `ros2 launch` only calls this function. Tests of launch_testing, launch_pytest and pytest are not reported, because
-    they have other functions. Neither are modules of a Python package, next to an `__init__.py`. For a file without
-    statements, which is unfinished or disabled, the finding is an information.
+    `ros2 launch` calls this function and no other. Tests for launch_testing, launch_pytest and pytest are not reported,
+    because they define other functions. Modules of a Python package (next to an `__init__.py`) are not reported either.
+    For a file without statements, which is unfinished or disabled, the finding is only an information.
 
     ## Example
 
@@ -107,7 +110,7 @@ class LaunchFunctionMissing(LaunchRule):
     severity = Severity.ERROR
 
     def check_launch(self, file: LaunchFile) -> Iterator[Diagnostic]:
-        """Yield the findings in a launch file."""
+        """Yield a finding if a launch file does not define ``generate_launch_description``."""
         if file.python is None or file.has_function or file.is_test:
             return
         if Path(file.source.name).with_name("__init__.py").is_file():
@@ -126,7 +129,7 @@ class LaunchFunctionMissing(LaunchRule):
             at = file.source.text.index(like)
             span = file.source.span(at, at + len(like))
         message = phrase("the launch file '{path}' does not define {function}()", path=file.path, function=FUNCTION)
-        # A file without any similar function may be one that others import.
+        # Without a similarly named function, the file may be a module that other launch files import.
         severity = Severity.ERROR if like else Severity.WARNING
         if not _COMMENT.sub("", file.source.text).strip():
             severity = Severity.INFO
@@ -138,8 +141,9 @@ class LaunchedFileMissing(Rule):
 
     ## Why
 
-    The launch fails, or the node starts without its file. Files that are created later are not reported: files that git
-    ignores, maps, files that a launch file itself writes, and files that a script or a README of the package mentions.
+    The launch fails, or the node starts without its file. Files that are probably created later are not reported: maps,
+    files that git ignores, files that the launch file itself writes, and files that a script or a README of the package
+    mentions.
 
     ## Example
 
@@ -181,10 +185,10 @@ class LaunchedFileMissing(Rule):
             return
         name = shared.path.rpartition("/")[2]
         if not own and (share.parent.name != "share" or is_substitute(share)):
-            return  # the sources of another package, which may install its files elsewhere, or only some of them
+            return  # another package found as sources may install its files elsewhere, or only some of them
         sources = None if own else subject.finder.find_in_sources(shared.package)
         if sources is not None and (sources / shared.path).exists():
-            return  # a build from before the file was added lacks it
+            return  # the installed copy may be older than this file
         if own and any(other.rpartition("/")[2] == name for other in package.files) and _may_move(package):
             return
         if own and is_made_later(package, shared.path):

@@ -1,4 +1,4 @@
-"""Rules about the nodes of launch files: their packages and executables, and dependencies in ``package.xml``."""
+"""Rules about the nodes of launch files: packages, executables, and declared dependencies."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class LaunchedPackageUnknown(Rule):
 
     ## Why
 
-    The launch fails: the package is not found.
+    The launch fails because the package is not found.
 
     ## Example
 
@@ -99,7 +99,7 @@ class LaunchedExecutableUnknown(PackageRule):
 
     ## Why
 
-    The launch fails: the executable is not found in the folder of the package.
+    The launch fails because the executable is not found in the folder of the package.
 
     ## Example
 
@@ -118,7 +118,7 @@ class LaunchedExecutableUnknown(PackageRule):
     name = "launched-executable-unknown"
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """Yield the findings in a package."""
+        """Yield a finding for each unknown executable in the launch files of a package."""
         for file in package.launch_files.values():
             yield from self._of_file(file, package)
 
@@ -148,9 +148,9 @@ class UndeclaredLaunchDependency(Rule):
 
     ## Why
 
-    rosdep installs the packages that `package.xml` names. On a machine without the other packages, the launch fails.
-    The packages of every ROS installation, such as `launch_ros`, dependencies of declared packages, and packages that
-    depend on this package, which cannot be declared, are not reported.
+    rosdep only installs the packages that `package.xml` names. On a machine without the other packages, the launch
+    fails. Some packages are not reported: those of every ROS installation, such as `launch_ros`, dependencies of
+    declared packages, and packages that depend on this package, since declaring them would form a cycle.
 
     ## Example
 
@@ -207,7 +207,7 @@ class UndeclaredLaunchDependency(Rule):
 
 
 def _used_packages(package: PackageContext) -> dict[str, Note]:
-    """Return the packages that launch files use, each with a note on its first use."""
+    """Return the packages that launch files use, by name, each with a note on its first use."""
     found: dict[str, Note] = {}
     for file in package.launch_files.values():
         for name, span in file.imports:
@@ -229,9 +229,9 @@ def _used_packages(package: PackageContext) -> dict[str, Note]:
 
 
 def _dependency_fix(manifest: Manifest, names: list[str]) -> Fix | None:
-    """Return the fix that adds dependencies after the last one that is not only for tests.
+    """Return the fix that adds dependencies to ``package.xml``, or None if this is not possible.
 
-    The new lines have its indentation. The result is None if the fix is not possible.
+    The new lines follow the last dependency that is not only for tests, and have the indentation of this dependency.
     """
     source = manifest.document.source
     if source is None or not manifest.dependencies:
@@ -262,7 +262,7 @@ def _own_executables(package: PackageContext) -> frozenset[str] | None:
     """Return the executables of a package, or None if not all are known."""
     setup, cmake = package.setup, package.cmake
     if cmake is not None:
-        return None  # targets are defined in many ways
+        return None  # CMake targets are defined in too many ways to know all of them
     if (
         setup is None
         or not setup.entry_points_complete
@@ -281,7 +281,10 @@ def _is_known(name: str, package: PackageContext, subject: Subject) -> bool:
 
 
 def _intended_package(name: str, package: PackageContext, subject: Subject) -> str | None:
-    """Return the package that a misspelt name probably means, or None."""
+    """Return the known package whose name was probably misspelt, or None.
+
+    The result is None if a package with the given name exists.
+    """
     if not name or name in WELL_KNOWN or _is_known(name, package, subject):
         return None
     like = next(iter(nearest(name, [*WELL_KNOWN, package.name], 1)), None)
@@ -289,7 +292,7 @@ def _intended_package(name: str, package: PackageContext, subject: Subject) -> s
 
 
 def _is_slip(name: str, like: str) -> bool:
-    """Return whether two names differ by only one or two wrong letters."""
+    """Return whether two names of at least five letters differ by at most one or two letters."""
     if abs(len(name) - len(like)) > 2 or min(len(name), len(like)) < 5:
         return False
     from difflib import SequenceMatcher

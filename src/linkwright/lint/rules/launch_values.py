@@ -64,7 +64,7 @@ class CommandWithoutBlank(LaunchRule):
     severity = Severity.ERROR
 
     def check_launch(self, file: LaunchFile) -> Iterator[Diagnostic]:
-        """Yield the findings in a launch file."""
+        """Yield a finding for each ``Command`` of a launch file that lacks a blank."""
         python = file.python
         if python is None:
             return
@@ -87,9 +87,9 @@ class DescriptionNotTyped(Rule):
 
     ## Why
 
-    launch parses the output of a command as YAML. Most descriptions are plain text in YAML. A colon followed by a
-    blank, usually in a comment, makes this fail: "Unable to parse the value of parameter robot_description as yaml". To
-    detect this, the rule expands the descriptions that the launch file names.
+    launch parses the output of a command as YAML. Most descriptions are valid plain text in YAML. However, a colon
+    followed by a blank, usually in a comment, causes the error "Unable to parse the value of parameter
+    robot_description as yaml". To detect this error, the rule expands the descriptions that the launch file names.
 
     ## Example
 
@@ -111,7 +111,7 @@ class DescriptionNotTyped(Rule):
     scope = Scope.PACKAGE
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        """Yield a finding for every ``robot_description`` without a type where it breaks a named description."""
+        """Yield a finding for each untyped ``robot_description`` that is not valid YAML."""
         package = subject.package
         if package is None:
             return
@@ -135,7 +135,7 @@ class LaunchArgumentUndeclared(LaunchRule):
 
     ## Why
 
-    The launch fails: "launch configuration does not exist".
+    The launch fails with "launch configuration does not exist".
 
     ## Example
 
@@ -155,7 +155,7 @@ class LaunchArgumentUndeclared(LaunchRule):
     name = "launch-argument-undeclared"
 
     def check_launch(self, file: LaunchFile) -> Iterator[Diagnostic]:
-        """Yield the findings in a launch file."""
+        """Yield a finding for each misspelt launch configuration in a launch file."""
         python = file.python
         if python is None:
             return
@@ -164,7 +164,7 @@ class LaunchArgumentUndeclared(LaunchRule):
             first = call.args[0] if call.args else argument_of(call, "name")
             name = python.text(first)
             if name is None:
-                return  # one declared name is unknown, so nothing can be reported
+                return  # not all declared names are known, so no name can be called undeclared
             declared.add(name)
         for call in python.calls("LaunchConfiguration"):
             if len(call.args) != 1 or call.keywords:
@@ -186,7 +186,7 @@ class FixedFrameUnknown(PackageRule):
 
     ## Why
 
-    RViz shows nothing but "Frame does not exist" until the user chooses another frame.
+    RViz only shows "Frame does not exist" until the user chooses another frame.
 
     ## Example
 
@@ -207,7 +207,7 @@ class FixedFrameUnknown(PackageRule):
     name = "fixed-frame-unknown"
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """Yield the findings in a package."""
+        """Yield a finding for each RViz configuration of a package with an unknown fixed frame."""
         files = [file for file in package.files if file.endswith(".rviz")]
         if not files or not package.descriptions:
             return
@@ -234,9 +234,10 @@ class FixedFrameUnknown(PackageRule):
 
 
 def _link_names(package: PackageContext) -> tuple[set[str], list[list[str]]]:
-    """Return the names of links as the package's descriptions write them.
+    """Return the literal link names of a package, and the parts of computed names.
 
-    Plain names are in the first item. The second contains the literal parts of names with expressions.
+    The parts of a name are the literal texts between its xacro expressions. Both results are empty if a description
+    includes files of another package.
     """
     names: set[str] = set()
     patterns: list[list[str]] = []
@@ -244,7 +245,7 @@ def _link_names(package: PackageContext) -> tuple[set[str], list[list[str]]]:
         for element in document.root.walk():
             included = element.attributes.get("filename", "") if element.tag == "xacro:include" else ""
             if "$(find" in included and f"$(find {package.name})" not in included:
-                return set(), []  # links are also defined in other packages
+                return set(), []  # the other package may define links, too
             if element.tag != "link":
                 continue
             name = element.attributes.get("name", "")
@@ -256,7 +257,7 @@ def _link_names(package: PackageContext) -> tuple[set[str], list[list[str]]]:
 
 
 def _fits(name: str, parts: list[str]) -> bool:
-    """Return whether a name contains these parts in this order, with anything between them."""
+    """Return whether a name consists of these parts in this order, with any text between them."""
     first, last = parts[0], parts[-1]
     if len(parts) == 1:
         return name == first
@@ -272,7 +273,7 @@ def _fits(name: str, parts: list[str]) -> bool:
 
 
 class _Untyped(NamedTuple):
-    """A value of ``robot_description`` that launch reads as YAML, and the fix that gives it a type."""
+    """A value of ``robot_description`` that is parsed as YAML, with the fix."""
 
     span: Span
     hint: Phrase
@@ -307,7 +308,10 @@ def _is_command(call: ast.Call) -> bool:
 def _first_invalid_yaml_description(
     file: LaunchFile, package: PackageContext, subject: Subject
 ) -> tuple[str, str] | None:
-    """Return the first description named by a launch file that YAML cannot read, with the reason; or None."""
+    """Return the path of the first description that is not valid YAML, with the reason, or None.
+
+    The descriptions are those that a launch file names.
+    """
     for shared in file.paths:
         share = package.folder if shared.package == package.name else subject.finder.find(shared.package)
         if share is None or not shared.path.endswith((".urdf", ".xacro")) or not (share / shared.path).is_file():
@@ -323,7 +327,7 @@ def _first_invalid_yaml_description(
 
 
 def _yaml_problem(text: str) -> str | None:
-    """Return why a text is not a string when it is parsed as YAML, as launch does; None if it is one."""
+    """Return why launch cannot parse a text as a YAML string, or None if it can."""
     import yaml
 
     try:
@@ -334,7 +338,7 @@ def _yaml_problem(text: str) -> str | None:
 
 
 def _is_program(node: ast.expr, python: PythonFile) -> bool:
-    """Return whether a part of a command is the name of a program without a blank after it."""
+    """Return whether a part of a command is the name of a program without a trailing blank."""
     text = python.text(node)
     if text is not None:
         return bool(re.search(r"(^|/)(xacro|cat)$", text))
@@ -345,7 +349,7 @@ def _begins_with_blank(node: ast.expr, python: PythonFile) -> bool:
     text = python.text(node)
     if text is not None:
         return text[:1].isspace()
-    # Anything other than a path or a configuration may begin with a blank.
+    # Only a path or a launch configuration certainly has no leading blank.
     node = python.resolved(node)
     if isinstance(node, ast.Call):
         name = called_name(node).rpartition(".")[2]
@@ -356,9 +360,9 @@ def _begins_with_blank(node: ast.expr, python: PythonFile) -> bool:
 
 
 def _blank_fix(program: ast.expr, python: PythonFile) -> Fix | None:
-    """Return the fix that adds a blank to the name of the program.
+    """Return the fix that adds a blank after a program's name, or None if not possible.
 
-    The blank is added before the closing quote of the name, or as a separate part after it.
+    The blank is added before the closing quote of the name, or as a separate part of the command.
     """
     start, end = python.range(program)
     source: SourceText = python.source
@@ -369,7 +373,10 @@ def _blank_fix(program: ast.expr, python: PythonFile) -> Fix | None:
 
 
 def _is_slip(name: str, like: str) -> bool:
-    """Return whether two names differ in one added, omitted or changed letter, or only in letter order."""
+    """Return whether two names differ in one letter, or only in letter order.
+
+    Both names must have at least four letters. One letter may be added, omitted or changed.
+    """
     if min(len(name), len(like)) < 4 or abs(len(name) - len(like)) > 1:
         return False
     if sorted(name) == sorted(like):

@@ -24,7 +24,7 @@ _ALIKE = 0.1001
 
 
 def definitions(subject: Subject) -> Iterator[Material]:
-    """Yield every material that has a colour or texture: first those of the robot, then those in visuals."""
+    """Yield every material with a colour or texture, first at robot level, then in visuals."""
     elements = [*subject.elements("material")]
     for link in subject.elements("link"):
         for visual in link.elements("visual"):
@@ -48,9 +48,9 @@ class RedefinedMaterial(Rule):
 
     ## Why
 
-    The first definition of a name in the file applies to all uses, even over the colour written in the visual.
-    Therefore, the second colour is never shown: "RViz shows the wrong colour". The finding on a colour that looks like
-    the first is an information.
+    The first definition of a name in the file applies to all uses of the name, even to a visual that defines another
+    colour. Therefore, the second colour is never shown, and users complain that RViz shows the wrong colour. If the two
+    colours look the same, the finding is only an information.
 
     ## Example
 
@@ -64,7 +64,7 @@ class RedefinedMaterial(Rule):
 
     ## Use instead
 
-    A different name for each colour, such as `dark_grey`.
+    Give each colour its own name, such as `dark_grey`.
     """
 
     code = "LW501"
@@ -83,7 +83,7 @@ class RedefinedMaterial(Rule):
             if same or element is None or known.element is None:
                 continue
             if material.name in global_names and element in set(subject.elements("material")):
-                continue  # two definitions at robot level, which the reader refuses
+                continue  # the reader reports two definitions at robot level
             key = (material.name, material.rgba, material.texture)
             if key in reported:
                 continue
@@ -109,9 +109,9 @@ class InvisibleMaterial(Rule):
 
     ## Why
 
-    The fourth number is the opacity. With 0 the part exists but is invisible; exports from CAD often confuse it with a
-    transparency of 0. If a material is defined twice, the first definition counts. A material whose name shows that it
-    is invisible is not reported.
+    The fourth number is the opacity. With 0, the part exists but is invisible. CAD exporters often confuse the opacity
+    with a transparency of 0. If a material is defined twice, the first definition counts. A material whose name shows
+    that it is invisible is not reported.
 
     ## Example
 
@@ -160,7 +160,7 @@ class EmptyReference(Rule):
 
     ## Why
 
-    It refers to nothing, so the part gets the tool's default colour.
+    The material refers to nothing, so each tool shows the part in its default colour.
 
     ## Example
 
@@ -170,7 +170,7 @@ class EmptyReference(Rule):
 
     ## Use instead
 
-    The name of a material, or a `<color>` inside the element.
+    Write the name of a material, or add a `<color>` to the element.
     """
 
     code = "LW506"
@@ -201,8 +201,8 @@ class UnusedMaterial(Rule):
 
     ## Why
 
-    Often, only some colours of a palette are used, so this is harmless. However, an unused material that was intended
-    for one part often means that the part names the wrong material.
+    Often, a robot only uses some colours of a palette, which is harmless. However, if the material was intended for one
+    part, this part probably names the wrong material.
 
     ## Example
 
@@ -288,7 +288,7 @@ class AlikeNames(Rule):
 
     ## Why
 
-    `Grey` and `grey` are two materials to URDF. Where both exist, one was probably meant to be the other.
+    `Grey` and `grey` are two different materials in URDF. If both exist, probably only one was intended.
 
     ## Example
 
@@ -299,7 +299,7 @@ class AlikeNames(Rule):
 
     ## Use instead
 
-    One of them; names are lower case by convention.
+    Write the same name everywhere. By convention, names are lower case.
     """
 
     code = "LW509"

@@ -123,7 +123,7 @@ class TextureOnStl(Rule):
 
     ## Why
 
-    STL has no texture coordinates, so the image cannot be placed, and is not shown.
+    STL has no texture coordinates, so the image cannot be mapped to the surface and is not shown.
 
     ## Example
 
@@ -136,7 +136,7 @@ class TextureOnStl(Rule):
 
     ## Use instead
 
-    A mesh with texture coordinates: COLLADA, OBJ or glTF.
+    Use a mesh format with texture coordinates: COLLADA, OBJ or glTF.
     """
 
     code = "LW505"
@@ -161,7 +161,7 @@ class TextureOnStl(Rule):
 
 
 def _textures(subject: Subject) -> Iterator[tuple[Element, str]]:
-    """Yield the ``<texture>`` elements with the URIs of their images, each place once."""
+    """Yield each ``<texture>`` element with the URI of its image."""
     for material in definitions(subject):
         element = material.element.first("texture") if material.element is not None else None
         if element is not None and material.texture is not None:

@@ -19,7 +19,10 @@ if TYPE_CHECKING:
 
 
 def readable_meshes(subject: Subject, kind: str | None = None) -> Iterator[tuple[MeshUse, Outline]]:
-    """Yield the uses of readable meshes with their scaled outlines, for one or both kinds of shape."""
+    """Yield the uses of readable meshes with their scaled outlines.
+
+    `kind` is ``visual``, ``collision``, or None for both.
+    """
     for use in subject.meshes.uses:
         if kind is None or use.kind == kind:
             mesh = subject.meshes.outline(use.shape)
@@ -82,8 +85,8 @@ class NegativeScale(Rule):
 
     ## Why
 
-    Mirroring turns the triangles inside out. Renderers handle this, but physics engines let objects sink in or push
-    them out on the wrong side.
+    Mirroring turns the triangles inside out. Renderers handle such a mesh, but in physics engines, objects sink into it
+    or are pushed out on the wrong side.
 
     ## Example
 
@@ -95,7 +98,7 @@ class NegativeScale(Rule):
 
     ## Use instead
 
-    A mesh file with mirrored geometry, or simple shapes.
+    Use a mesh file with mirrored geometry, or simple shapes.
     """
 
     code = "LW431"
@@ -126,8 +129,8 @@ class UnevenScale(Rule):
 
     ## Why
 
-    A unit conversion has three equal factors. If one is ten or a thousand times another, a digit is wrong. A mesh that
-    is stretched by other amounts is assumed to be intended.
+    A unit conversion has three equal factors. If one factor is ten or a thousand times another, a digit is wrong. Other
+    unequal factors are assumed to be intended.
 
     ## Example
 
@@ -171,8 +174,8 @@ class Millimetres(Rule):
     ## Why
 
     STL and OBJ have no unit, and CAD programs write millimetres. URDF interprets the numbers as metres, so the part is
-    a thousand times too large, and the camera of RViz is inside it and shows nothing. A single link of mass zero is
-    scenery, such as a terrain, and may have any size.
+    a thousand times too large. The camera of RViz is then inside the part and shows nothing. A robot of a single link
+    with mass zero is scenery, such as a terrain, and may have any size.
 
     ## Example
 
@@ -217,7 +220,7 @@ class TooSmall(Rule):
 
     ## Why
 
-    A mesh in metres was scaled by a thousandth as if it were in millimetres, so it is almost invisible.
+    The mesh is in metres, but was scaled by a thousandth as if it were in millimetres, so it is almost invisible.
 
     ## Example
 
@@ -231,7 +234,7 @@ class TooSmall(Rule):
     <mesh filename="package://arm/meshes/base.dae"/>
     ```
 
-    COLLADA files declare their unit, which is applied.
+    COLLADA files declare their unit, which readers apply.
     """
 
     code = "LW434"
@@ -267,8 +270,8 @@ class ScalesDiffer(Rule):
 
     ## Why
 
-    The same file has the same unit everywhere. Where one place scales it by a thousandth and another does not, one of
-    them is wrong.
+    A file has the same unit wherever it is used. If one use scales it by a thousandth and another does not, one of the
+    two is wrong.
 
     ## Example
 
@@ -279,7 +282,7 @@ class ScalesDiffer(Rule):
 
     ## Use instead
 
-    The same `scale` in both.
+    Write the same `scale` everywhere.
     """
 
     code = "LW438"

@@ -1,4 +1,4 @@
-"""Rules about the URIs of mesh files as they are written; other rules check whether the files exist."""
+"""Rules about the form of mesh URIs; other rules check whether the files exist."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def written(element: Element, attribute: str) -> str:
 
 
 def is_portable(uri: str) -> bool:
-    """Return whether a URI has a form that ROS tools resolve: a scheme, or an absolute path."""
+    """Return whether ROS tools can resolve a URI: it has a scheme or is an absolute path."""
     return bool(_SCHEME.match(uri)) or Path(uri).is_absolute()
 
 
@@ -84,10 +84,10 @@ class RelativePath(Rule):
 
     ## Why
 
-    Its base depends on the tool: the folder of the URDF for some, the current folder for others. RViz receives the
-    description as text on a topic, has no base folder, and shows nothing. In a file outside a ROS package, or next to a
-    model for MuJoCo, the finding is an information, because such files are meant for simulators that do not know
-    packages.
+    The base of a relative path depends on the tool: some use the folder of the URDF, others the current folder. RViz
+    receives the description on a topic, so it has no base folder and shows nothing. In a file outside a ROS package, or
+    next to a model for MuJoCo, the finding is only an information, because such files are meant for simulators that do
+    not know packages.
 
     ## Example
 
@@ -127,7 +127,10 @@ def _is_relative(uri: str) -> bool:
 
 
 def _is_beside_mujoco(folder: Path) -> bool:
-    """Return whether a folder contains MuJoCo models, whose robot descriptions use paths relative to it."""
+    """Return whether a folder contains MuJoCo models.
+
+    Robot descriptions in such a folder use paths relative to the folder.
+    """
     with suppress(OSError):
         return any(_MUJOCO in file.read_bytes()[:_HEAD] for file in folder.glob("*.xml"))
     return False
@@ -138,8 +141,8 @@ class HomePath(Rule):
 
     ## Why
 
-    On every other computer, and in every container, this folder does not exist, or is a different one. Only the text in
-    the file is checked: `file://$(find PACKAGE)/...` is found wherever the package is.
+    On every other computer, and in every container, this folder does not exist or has other contents. The rule checks
+    the unexpanded text, because `file://$(find PACKAGE)/...` works on every computer with the package.
 
     ## Example
 
@@ -185,7 +188,7 @@ class UnknownEnding(Rule):
 
     ## Why
 
-    RViz and Gazebo read STL, COLLADA, OBJ and glTF; files of CAD programs have to be exported.
+    RViz and Gazebo read STL, COLLADA, OBJ and glTF. Export files of CAD programs to one of these formats.
 
     ## Example
 
@@ -230,8 +233,8 @@ class AwkwardName(Rule):
     ## Why
 
     RViz fetches meshes through a library for web URLs, which does not allow blanks. Non-ASCII letters are compared byte
-    by byte, so the same name typed on a Mac is a different one on Linux. As the file is found on the author's computer,
-    the finding on such letters is an information.
+    by byte, so a name typed on a Mac may not match the same name on Linux. The finding on such letters is only an
+    information, because the file is found on the author's computer.
 
     ## Example
 
@@ -267,7 +270,11 @@ class AwkwardName(Rule):
 
 
 def uri_problem(uri: str) -> tuple[str | None, str | None]:
-    """Return the mistake in a URI, as the end of a sentence, and a correct URI, or None for either."""
+    """Return the mistake in a URI and the corrected URI.
+
+    The mistake is the end of a sentence, such as ``is empty``, or None if there is none. The corrected URI is None if
+    it is not known.
+    """
     if not uri.strip():
         return phrase("is empty"), None
     if "\\" in uri:
@@ -299,7 +306,7 @@ def uri_problem(uri: str) -> tuple[str | None, str | None]:
 
 
 def _as_package_uri(path: Path | None) -> str | None:
-    """Return the ``package://`` URI of an existing file, or None."""
+    """Return the ``package://`` URI of an existing file in a package, or None."""
     if path is None or not path.is_file():
         return None
     resolved = Path(normalized_path(path))
@@ -310,7 +317,7 @@ def _as_package_uri(path: Path | None) -> str | None:
 def _in_known_package(subject: Subject, path: Path | None) -> str | None:
     """Return the ``package://`` URI for a path on another computer, or None.
 
-    The path must contain a package that is available here, too.
+    The path must contain the name of a package that is found on this computer.
     """
     names = path.parts if path is not None else ()
     for index in range(len(names) - 2, 0, -1):
@@ -322,7 +329,10 @@ def _in_known_package(subject: Subject, path: Path | None) -> str | None:
 
 
 def file_hint(path: Path, endings: Sequence[str]) -> Phrase:
-    """Return a hint on a missing file that names files with one of the extensions, given in lower case."""
+    """Return a hint on a missing file that names existing files with one of the extensions.
+
+    The extensions `endings` are in lower case.
+    """
     try:
         names = sorted(entry.name for entry in path.parent.iterdir() if entry.suffix.lower() in endings)
     except OSError:
@@ -335,5 +345,5 @@ def file_hint(path: Path, endings: Sequence[str]) -> Phrase:
 
 
 def normalized_path(path: Path) -> str:
-    """Return a path without ``..`` and ``.``, without resolving symbolic links."""
+    """Return a path without ``..`` and ``.``; symbolic links are not resolved."""
     return os.path.normpath(path)

@@ -17,9 +17,9 @@ class HeavyCollision(Rule):
 
     ## Why
 
-    Every simulation step and every pose that a planner tries tests all of them. Collision shapes of a few hundred
-    triangles, or a few boxes and cylinders, find the same contacts in a hundredth of the time. Up to twice the number,
-    the finding is an information, because most programs still handle this.
+    All triangles are tested in every simulation step, and for every pose that a planner tries. With a few hundred
+    triangles, or a few boxes and cylinders, the same contacts are found in a hundredth of the time. Up to twice the
+    allowed number, the finding is only an information, because most programs still handle such a mesh.
 
     ## Example
 
@@ -27,7 +27,7 @@ class HeavyCollision(Rule):
 
     ## Use instead
 
-    Its convex hull, a decimated copy, or simple shapes.
+    Use the convex hull of the mesh, a decimated copy, or simple shapes.
     """
 
     code = "LW435"
@@ -62,7 +62,7 @@ class VisualAsCollision(Rule):
 
     ## Why
 
-    A mesh for viewing has more triangles than contacts need, and is often not closed.
+    A visual mesh has more triangles than collision detection needs, and is often not closed.
 
     ## Example
 
@@ -107,8 +107,8 @@ class OpenMesh(Rule):
 
     ## Why
 
-    A mesh with a hole has no inside: volumes and inertias computed from it are wrong, and some engines push bodies out
-    on the wrong side. Others use its convex hull, which is larger than it looks.
+    A mesh with a hole has no inside: volumes and inertias computed from the mesh are wrong, and some physics engines
+    push bodies out on the wrong side. Other engines use the convex hull, which may be larger than the visible part.
 
     ## Example
 
@@ -116,7 +116,7 @@ class OpenMesh(Rule):
 
     ## Use instead
 
-    A closed mesh, its convex hull, or simple shapes.
+    Use a closed mesh, the convex hull of the mesh, or simple shapes.
     """
 
     code = "LW437"

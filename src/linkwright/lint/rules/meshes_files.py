@@ -1,4 +1,4 @@
-"""Rules about mesh files: whether the file of a URI exists, and whether it is a mesh."""
+"""Rules about mesh files: whether the file of a URI exists, and whether it is readable."""
 
 from __future__ import annotations
 
@@ -46,7 +46,10 @@ def _is_listed(folder: Path, name: str) -> bool:
 
 
 def _folder_hint(use: MeshUse, name: str) -> Phrase | None:
-    """Return how to use a folder near the description instead of a missing package, or None."""
+    """Return a hint about a folder whose name was written as a package, or None.
+
+    The folder must be near the description.
+    """
     source = use.element.source
     if source is None or not name:
         return None
@@ -74,9 +77,9 @@ class UnknownPackage(Rule):
 
     ## Why
 
-    Without the package, the mesh is missing. The package's name is misspelt, its workspace is missing or not sourced,
-    or a folder such as `meshes` is written in place of the package's name. The finding is an information if
-    `package.xml`, or that of a neighbouring package, declares the package: it is only missing on this machine.
+    Without the package, the mesh is missing. Either the name of the package is misspelt, or its workspace is missing or
+    not sourced, or a folder such as `meshes` is written in place of the package's name. If the `package.xml` of this or
+    a neighbouring package declares the package, it is only missing on this machine, and the finding is an information.
 
     ## Example
 
@@ -152,7 +155,7 @@ class MissingFile(Rule):
         missing: dict[Path, list[tuple[MeshUse, Path]]] = {}
         for use, path in subject.meshes.files:
             if uri_problem(use.mesh.filename)[0] or HOME.match(written(use.element, "filename")):
-                continue  # reported already
+                continue  # another rule already reports this mesh
             if path.is_file() or case_twin(path) is not None or is_ignored_by_git(path):
                 continue
             missing.setdefault(_last_folder(path), []).append((use, path))
@@ -192,7 +195,8 @@ class WrongCase(Rule):
 
     ## Why
 
-    macOS and Windows still find the file, but Linux does not: it works for the author and fails on the robot.
+    macOS and Windows still find the file, but Linux does not. The description then works on the author's computer and
+    fails on the robot.
 
     ## Example
 
@@ -269,7 +273,7 @@ class OutsidePackage(Rule):
         for use, path in files:
             uri = use.mesh.filename
             if HOME.match(written(use.element, "filename")):
-                continue  # reported already
+                continue  # another rule already reports this mesh
             resolved = Path(normalized_path(path))
             message = None
             if uri.startswith("package://"):
@@ -295,7 +299,7 @@ class UnreadableMesh(Rule):
     ## Why
 
     The file is empty, truncated, or in a format that does not match its extension. If the repository stores meshes with
-    Git LFS, the file may be a pointer to the mesh, a text of three lines.
+    Git LFS, the file may be a pointer to the mesh, which is a text of three lines.
 
     ## Example
 
@@ -303,7 +307,7 @@ class UnreadableMesh(Rule):
 
     ## Use instead
 
-    Fetch it with `git lfs pull`, or export it again.
+    Fetch the mesh with `git lfs pull`, or export it again.
     """
 
     code = "LW429"
@@ -325,7 +329,7 @@ class UnreadableMesh(Rule):
 
 
 def _with_case(uri: str, twin: Path) -> str:
-    """Return a URI with the end of its path in the upper and lower case of a file."""
+    """Return a URI with the upper and lower case of an existing file at the end of its path."""
     parts = uri.split("/")
     for back, name in enumerate(reversed(twin.parts), start=1):
         if back >= len(parts) or parts[-back].casefold() != name.casefold():

@@ -27,8 +27,8 @@ class BaseLinkMissing(Rule):
 
     ## Why
 
-    According to REP 105, the frame that is fixed to a mobile robot is `base_link`. Navigation, localisation and
-    teleoperation expect this name.
+    According to REP 105, the frame that is attached to a mobile robot is called `base_link`. Navigation, localisation
+    and teleoperation expect this name.
 
     ## Example
 
@@ -79,8 +79,8 @@ class BaseLinkNotAtTheTop(Rule):
     ## Why
 
     In REP 105, `odom` is the parent of `base_link`. A frame has only one parent, so a link of the robot above
-    `base_link` either takes the place of `odom` or is disconnected. Pedantic: everything works if the odometry is for
-    the root of the tree.
+    `base_link` either replaces `odom` as the parent or is disconnected. Pedantic: everything works if the odometry
+    refers to the root of the tree.
 
     ## Example
 
@@ -126,9 +126,9 @@ class FootprintBelowBase(Rule):
 
     ## Why
 
-    `base_footprint` is the position of the robot on the ground, and its height and tilt are the transform from there to
-    `base_link` (REP 120). Pedantic: the other order is in use, and works if nothing publishes odometry for
-    `base_footprint`.
+    `base_footprint` is the position of the robot on the ground. The transform from `base_footprint` to `base_link`
+    contains the height and tilt of the robot (REP 120). Pedantic: the reverse order is also common, and works if no
+    node publishes odometry for `base_footprint`.
 
     ## Example
 
@@ -174,9 +174,9 @@ class FootprintHasBody(Rule):
 
     ## Why
 
-    `base_footprint` is a place on the ground, not a body. A body there rubs on the floor in simulation, and its mass is
-    counted twice. If the link also has a visual, it is the whole body of the robot under another name, and the finding
-    is an information.
+    `base_footprint` is a position on the ground, not a body. In simulation, a body there rubs on the floor, and its
+    mass is counted twice. If the link also has a visual, it is the body of the robot under another name, and the
+    finding is only an information.
 
     ## Example
 
@@ -220,9 +220,9 @@ class FixedFrameInRobot(Rule):
 
     ## Why
 
-    REP 105 gives these names to frames that localisation and odometry publish. A frame has one parent: with the link in
-    the description and a node that publishes the same frame, transforms jump between the two. A name from an argument
-    or a property is the choice of the caller, and is not reported.
+    REP 105 gives these names to frames that localisation and odometry publish. A frame has only one parent. If both the
+    description and a node publish the frame, its transform jumps between the two. A name from an argument or a property
+    is the choice of the caller, and is not reported.
 
     ## Example
 
@@ -255,8 +255,9 @@ class OpticalFrameRotation(Rule):
 
     ## Why
 
-    In a camera's body frame, x points forward and z up. In its optical frame, z points forward and y down, as in
-    images. Point clouds and detections are in the optical frame, and appear rotated if the rotation is missing.
+    In the body frame of a camera, x points forward and z up. In its optical frame, z points forward and y down, as in
+    images. Point clouds and detections are given in the optical frame, so they appear rotated if the rotation is
+    missing.
 
     ## Example
 
@@ -311,25 +312,34 @@ class OpticalFrameRotation(Rule):
 
 
 def _is_optical(joint: Joint | None) -> bool:
-    """Return whether a joint has the rotation of an optical frame in REP 103, whatever its child's name."""
+    """Return whether a joint has the rotation of an optical frame, as in REP 103.
+
+    The name of its child does not matter.
+    """
     return joint is not None and angle_between(rotation(joint.origin), _OPTICAL_ROTATION) <= _TOLERANCE
 
 
 def _is_tiny(shape: Geometry) -> bool:
-    """Return whether a shape only marks a place, because some simulators need one on every link."""
+    """Return whether a shape is so small that it is only a marker.
+
+    Some simulators require a shape on every link.
+    """
     if isinstance(shape, Box):
         return max(shape.size) <= _TINY
     return not isinstance(shape, Mesh) and 2.0 * shape.radius <= _TINY
 
 
 def _same_camera(stem: str, parent: str) -> bool:
-    """Return whether, by its name, a parent link is the camera's body frame, in which x is forward."""
+    """Return whether the names suggest that a parent link is the body frame of the camera."""
     base = re.sub(r"_(link|frame)$", "", parent)
     return bool(stem) and (base == stem or (stem.startswith(f"{base}_") and bool(_CAMERA.search(base))))
 
 
 def _is_slip(turned: Matrix) -> bool:
-    """Return whether a rotation consists of right angles, unlike that of a camera that looks elsewhere."""
+    """Return whether a rotation consists of right angles only, so that it is probably a mistake.
+
+    A camera that looks in another direction has other angles.
+    """
     return all(min(abs(value), abs(abs(value) - 1.0)) < 0.02 for row in turned for value in row)
 
 
@@ -338,8 +348,8 @@ class CameraWithoutOpticalFrame(Rule):
 
     ## Why
 
-    Images and point clouds name their frame, and REP 103 requires z to point forward in it. Pedantic: a camera that is
-    only for viewing does not need one.
+    The headers of images and point clouds name a frame, in which z must point forward (REP 103). Pedantic: a camera
+    that is only for viewing does not need an optical frame.
 
     ## Example
 
@@ -351,7 +361,8 @@ class CameraWithoutOpticalFrame(Rule):
 
     ## Use instead
 
-    Add a link `camera_optical_frame` with a fixed joint that has `rpy="-1.5708 0 -1.5708"`, and name it in the sensor.
+    Add a link `camera_optical_frame` with a fixed joint that has `rpy="-1.5708 0 -1.5708"`, and name the link in the
+    sensor.
     """
 
     code = "LW631"
@@ -376,8 +387,8 @@ class HumanoidFrames(Rule):
 
     ## Why
 
-    REP 120 gives humanoids a common set of frames, so that walking and grasping software finds wrists and soles by
-    name. Pedantic: few robots follow it.
+    REP 120 defines a common set of frames for humanoids, so that walking and grasping software finds wrists and soles
+    by name. Pedantic: few robots follow REP 120.
 
     ## Example
 

@@ -17,8 +17,8 @@ class JointNameIsLinkName(Rule):
 
     ## Why
 
-    URDF allows this, but SDF, to which Gazebo converts the description, does not: all parts of a model need different
-    names, and Gazebo refuses or renames parts with the same name.
+    URDF allows the same name, but Gazebo converts the description to SDF. In SDF, all parts of a model must have
+    different names, so Gazebo refuses or renames parts with the same name.
 
     ## Example
 
@@ -54,8 +54,8 @@ class RobotNameUnusual(Rule):
 
     ## Why
 
-    Tools derive file names, namespaces and parameter names from it, such as the package of MoveIt's assistant and the
-    model in Gazebo. Pedantic: nothing in ROS looks up robots by name.
+    Tools derive file names, namespaces and parameter names from the robot's name, such as the name of the package that
+    MoveIt's Setup Assistant generates, and of the model in Gazebo. Pedantic: nothing in ROS looks up robots by name.
 
     ## Example
 

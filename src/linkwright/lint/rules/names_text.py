@@ -16,7 +16,7 @@ _DOUBLED = lazy_pattern(r"(?:^|.*[_-])(link|joint|frame)[_-]\1$", re.IGNORECASE)
 
 
 def named(subject: Subject) -> Iterator[tuple[str, str, Element]]:
-    """Yield the kind, name and element of every link and joint that has a name, in file order."""
+    """Yield the kind, name and element of every link and joint that has a name, in source order."""
     for kind in ("link", "joint"):
         for element in subject.elements(kind):
             name = element.attributes.get("name", "")
@@ -29,8 +29,8 @@ class NameEdgeBlank(Rule):
 
     ## Why
 
-    The blank is part of the name. A parent, a transform lookup or a joint state without it names another link or joint,
-    and the difference is invisible.
+    The blank is part of the name. A parent, a transform lookup or a joint state without the blank refers to another
+    link or joint, and the difference is invisible.
 
     ## Example
 
@@ -66,8 +66,8 @@ class NameBlank(Rule):
 
     ## Why
 
-    Names of links and joints become names of frames, parameters and topics, and words on command lines. Blanks cause
-    problems there or are not allowed.
+    Names of links and joints become names of frames, parameters and topics, and arguments on command lines. There,
+    blanks cause problems or are not allowed.
 
     ## Example
 
@@ -141,8 +141,8 @@ class NameNotAscii(Rule):
 
     ## Why
 
-    Names of topics and parameters in ROS 2 are ASCII, and letters that look alike but differ (a Cyrillic `a`, a full
-    width underscore) make names that are hard to type.
+    Names of topics and parameters in ROS 2 are ASCII. Names with letters that look like others, such as a Cyrillic `a`
+    or a full-width underscore, are hard to type.
 
     ## Example
 
@@ -181,7 +181,7 @@ class NameUnusualCharacter(Rule):
     ## Why
 
     Brackets, quotes, colons and similar characters have a meaning on command lines, in YAML and in the names of topics
-    and parameters. A name with them works in one tool and fails in another.
+    and parameters. A name with such a character works in one tool and fails in another.
 
     ## Example
 
@@ -218,9 +218,9 @@ class NameUpperCase(Rule):
 
     ## Why
 
-    REP 144 asks for lower case and underscores in the names of packages, and REP 103, 105 and 120 name all their frames
-    in this way. Names in one style are easier to remember. Pedantic: the joints of many arms have the names that the
-    manufacturer gave the axes.
+    REP 144 requires lower case and underscores in the names of packages, and the frames of REP 103, 105 and 120 follow
+    the same style. Names in one style are easier to remember. Pedantic: the joints of many arms are named after the
+    axes in the manufacturer's documentation.
 
     ## Example
 
@@ -255,8 +255,8 @@ class NamesDifferInCase(Rule):
 
     ## Why
 
-    They are two names for ROS but look like one to a reader, so one is easily used in place of the other. Gazebo, and
-    mesh files on Windows and macOS, do not distinguish them.
+    ROS distinguishes the two names, but readers hardly do, so one is easily used in place of the other. Gazebo, and the
+    file systems of Windows and macOS, do not distinguish them.
 
     ## Example
 
@@ -297,8 +297,7 @@ class NameSuffixDoubled(Rule):
 
     ## Why
 
-    A macro appends `_link` to a parameter that already ends with it. The name works, but is easily written wrong from
-    memory.
+    A macro appends `_link` to a parameter that already ends with `_link`. The name works, but is easily misspelt.
 
     ## Example
 

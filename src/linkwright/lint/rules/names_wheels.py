@@ -1,8 +1,8 @@
 """Rules about wheels: whether their names, positions and axes agree.
 
-A wheel is recognised by its name alone: the word "wheel" in the name of the joint or its child link, without a word
-for a steering or suspension joint. All positions are given with every joint at zero, in the frame of ``base_link``
-(or the root), in which x points forward and y to the left (REP 103).
+A wheel is recognised by its name alone: the name of the joint or of its child link contains the word "wheel", and no
+word for a steering or suspension joint. All positions are in the frame of ``base_link`` (or of the root), with every
+joint at zero. In this frame, x points forward and y to the left (REP 103).
 """
 
 from __future__ import annotations
@@ -31,7 +31,10 @@ _AXIS_TOLERANCE = cos(radians(10.0))
 
 
 class Wheel(NamedTuple):
-    """A joint that turns a wheel, with its link, and its pose and axis in the base frame."""
+    """A joint that rotates a wheel, with the link of the wheel.
+
+    The pose and the axis are in the base frame.
+    """
 
     joint: Joint
     link: Link
@@ -40,7 +43,7 @@ class Wheel(NamedTuple):
 
 
 def wheels(subject: Subject, type_of_joint: str = "continuous") -> Iterator[Wheel]:
-    """Yield the wheels of a robot on joints of a type, by default continuous, in file order."""
+    """Yield the wheels of a robot whose joints have the given type, in source order."""
     robot, frames = subject.robot, subject.frames
     if robot is None:
         return
@@ -56,7 +59,7 @@ def wheels(subject: Subject, type_of_joint: str = "continuous") -> Iterator[Whee
 
 
 def joints_above(robot: Robot, joint: Joint) -> Iterator[Joint]:
-    """Yield the joints from a joint up to the root."""
+    """Yield a joint and the joints above it, up to the root."""
     moving = {joint.child: joint for joint in robot.joints.values()}
     while (above := moving.get(joint.parent)) is not None:
         yield above
@@ -64,13 +67,13 @@ def joints_above(robot: Robot, joint: Joint) -> Iterator[Joint]:
 
 
 def is_wheel(joint: Joint) -> bool:
-    """Return whether a joint belongs to a wheel, according to the names."""
+    """Return whether the names of a joint and its child suggest that it belongs to a wheel."""
     names = f"{joint.name} {joint.child}"
     return "wheel" in names.lower() and not _NO_WHEEL.search(names)
 
 
 def words(name: str) -> list[str]:
-    """Return the words of a name in lower case; ``leftWheel_joint`` has three."""
+    """Return the words of a name in lower case; ``leftWheel_joint`` has three words."""
     return [word.lower() for word in re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d+", name)]
 
 
@@ -138,10 +141,10 @@ class WheelHasLimits(Rule):
 
     ## Why
 
-    A revolute joint stops at its limits, so the wheel turns once and stops. A wheel turns without limits, which is what
-    `continuous` means. A joint that steers the wheel may have limits. It is recognised by its axis, which is not that
-    of the wheel's cylinder or, if the wheel has no cylinder, does not point to the side. A part that carries wheels,
-    such as the arm of a rover, is not a wheel.
+    A revolute joint stops at its limits, so the wheel turns once and stops. A `continuous` joint rotates without
+    limits, as a wheel does. Steering joints may have limits and are not reported. A steering joint is recognised by its
+    axis: the axis differs from that of the wheel's cylinder or, if the wheel has no cylinder, does not point to the
+    side. A part that carries wheels, such as the arm of a rover, is not a wheel.
 
     ## Example
 
@@ -184,8 +187,8 @@ class WheelAxis(Rule):
 
     ## Why
 
-    In URDF, the axis of a cylinder is z, so a wheel's shape is rotated by a right angle relative to the link, and the
-    axis of the joint must be that of the rotated cylinder. Otherwise the wheel tumbles instead of rolling.
+    In URDF, the axis of a cylinder is z, so a wheel's shape is rotated by a right angle relative to the link. The axis
+    of the joint must be that of the rotated cylinder. Otherwise, the wheel tumbles instead of rolling.
 
     ## Example
 
@@ -239,10 +242,10 @@ class WheelsTurnAgainst(Rule):
 
     ## Why
 
-    Equal velocities then turn the wheels against each other, and a differential drive controller makes the robot spin
-    instead of driving straight. If nothing in the description drives the wheels, neither a plugin of a simulator nor
-    `<ros2_control>`, the finding is an information: the driver of the robot may negate the velocity of one side. If a
-    plugin does so, the configuration can ignore this rule.
+    Equal velocities then rotate the wheels in opposite directions, and a differential drive controller makes the robot
+    spin instead of drive straight. If neither a simulator plugin nor `<ros2_control>` drives the wheels, the finding is
+    only an information, because the driver of the robot may negate the velocity of one side. If a plugin negates this
+    velocity, ignore the rule in the configuration.
 
     ## Example
 
@@ -283,8 +286,8 @@ class WheelsNotMirrored(Rule):
 
     ## Why
 
-    A robot that should be symmetric but has one slightly misplaced wheel drives in circles in simulation. Pedantic:
-    robots need not be symmetric.
+    If one wheel of a symmetric robot is slightly misplaced, the robot drives in circles in simulation. Pedantic: robots
+    need not be symmetric.
 
     ## Example
 
@@ -295,7 +298,7 @@ class WheelsNotMirrored(Rule):
 
     ## Use instead
 
-    A macro with a parameter for the side: `<origin xyz="0 ${side*wheel_y} 0"/>`.
+    Use a macro with a parameter for the side: `<origin xyz="0 ${side*wheel_y} 0"/>`.
     """
 
     code = "LW644"
@@ -326,8 +329,9 @@ class WheelsTurnBackward(Rule):
 
     ## Why
 
-    By the right-hand rule, a wheel that turns about +y, which points to the left, rolls forward. If both axes are
-    reversed, a positive velocity drives backward. Pedantic: a controller may be configured for that.
+    The y axis points to the left. By the right-hand rule, a wheel that rotates about +y rolls forward. If both axes are
+    reversed, the robot drives backward at a positive velocity. Pedantic: a controller may be configured for reversed
+    axes.
 
     ## Example
 
@@ -360,7 +364,7 @@ class WheelsTurnBackward(Rule):
 
 
 def _is_driven(subject: Subject, joint: Joint) -> bool:
-    """Return whether a plugin of a simulator or `<ros2_control>` commands the joint."""
+    """Return whether a simulator plugin or ``<ros2_control>`` commands the joint."""
     for gazebo in subject.elements("gazebo"):
         for plugin in gazebo.elements("plugin"):
             if any(joint.name in element.text().split() for element in plugin.walk()):
@@ -382,7 +386,10 @@ def _disc_axes(link: Link) -> Iterator[Vector3]:
 
 
 def _rolls(wheel: Wheel) -> bool:
-    """Return whether the joint turns the wheel about the wheel's own axis."""
+    """Return whether the joint rotates the wheel about the axis of its cylinder.
+
+    If the link has no flat cylinder, the axis must point to the side.
+    """
     discs = list(_disc_axes(wheel.link))
     if not discs:
         return abs(wheel.axis[1]) >= _AXIS_TOLERANCE
@@ -391,12 +398,15 @@ def _rolls(wheel: Wheel) -> bool:
 
 
 def _is_wide(joint: Joint) -> bool:
-    """Return whether the limits allow many turns."""
+    """Return whether the limits of a joint span more than 1000 rad, so that a wheel can roll."""
     return joint.limit is not None and joint.limit.upper - joint.limit.lower > 1000.0
 
 
 def _rounded(axis: Vector3) -> str:
-    """Return a direction as text with a positive largest component, as a wheel's axis has no sign."""
+    """Return an axis as text, rounded, and reversed if its largest component is negative.
+
+    The sign of a wheel's axis has no meaning here.
+    """
     sign = 1.0 if max(axis, key=abs) > 0 else -1.0
     return " ".join(f"{round(sign * value, 3) + 0.0:g}" for value in axis)
 

@@ -30,8 +30,8 @@ class PackageNameDiffers(PackageRule):
 
     ## Why
 
-    With two names, the build stops, or it installs files under one name that are looked up under the other. This
-    happens when a package is copied and renamed.
+    With two names, the build stops, or the files are installed under one name and looked up under the other. The names
+    often differ after a package was copied and renamed.
 
     ## Example
 
@@ -57,7 +57,7 @@ class PackageNameDiffers(PackageRule):
     severity = Severity.ERROR
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """Yield the findings in a package."""
+        """Yield a finding for each build file that gives the package another name."""
         manifest = package.manifest
         if manifest is None:
             return
@@ -99,10 +99,10 @@ class PackageName(ManifestRule):
 
     ## Why
 
-    colcon reads `package.xml` through catkin_pkg, which refuses a name with blanks or dots: that is an error. REP 144
-    asks for lower case, digits and underscores; Python cannot import a package whose name has a dash, and `ros2 pkg
-    create` does not create one. Such a name is only an information, because others know a published package by its
-    name.
+    colcon reads `package.xml` through catkin_pkg, which refuses a name with blanks or dots, so such a name is an error.
+    REP 144 requires lower case letters, digits and underscores. Python cannot import a package whose name has a dash,
+    and `ros2 pkg create` does not create such a package. A name that only violates REP 144 is an information, because a
+    published package cannot easily be renamed.
 
     ## Example
 
@@ -121,12 +121,12 @@ class PackageName(ManifestRule):
     name = "package-name"
 
     def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
-        """Yield the findings in a manifest."""
+        """Yield a finding if the name of the package is not valid."""
         name, element = manifest.name, manifest.root.first("name")
         if name is None or element is None:
             return
         if not name:
-            return  # LW802 reports this
+            return  # LW802 reports a missing name
         for found in check_package_name(name):
             if is_accepted_name(name):
                 advice = found if iskeyword(name) else departure_from_rep(name)
@@ -149,7 +149,7 @@ class FolderNameDiffers(PackageRule):
 
     ## Use instead
 
-    Rename the folder, or leave it if the repository is one package.
+    Rename the folder. If the repository consists of one package, the folder may keep its name.
     """
 
     code = "LW806"
@@ -158,7 +158,7 @@ class FolderNameDiffers(PackageRule):
     severity = Severity.INFO
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """Yield the findings in a package."""
+        """Yield a finding if the folder and the package have different names."""
         manifest = package.manifest
         if manifest is None:
             return
@@ -178,7 +178,8 @@ class MaintainerEmail(ManifestRule):
     ## Why
 
     colcon reads `package.xml` through catkin_pkg, which refuses addresses such as `me@localhost` or `a@b.c`. The
-    package is still built, but without its environment hooks: after `source install/setup.bash`, ROS does not find it.
+    package is still built, but without its environment hooks, so ROS does not find the package after `source
+    install/setup.bash`.
 
     ## Example
 
@@ -198,7 +199,7 @@ class MaintainerEmail(ManifestRule):
     severity = Severity.ERROR
 
     def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
-        """Yield the findings in a manifest."""
+        """Yield a finding for each maintainer with an invalid e-mail address."""
         for element in manifest.root.elements():
             if element.tag not in ("maintainer", "author"):
                 continue
@@ -222,7 +223,8 @@ class ManifestPlaceholder(ManifestRule):
 
     ## Why
 
-    Others see the description, licence and maintainer of the package. Without a licence they may not use it.
+    The description, licence and maintainer of a published package are visible to its users. Without a licence, other
+    users are not allowed to use the package.
 
     ## Example
 
@@ -246,7 +248,7 @@ class ManifestPlaceholder(ManifestRule):
     severity = Severity.INFO
 
     def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
-        """Yield the findings in a manifest."""
+        """Yield a finding for each placeholder that ``ros2 pkg create`` left in the manifest."""
         for tag in ("description", "license", "maintainer", "author"):
             for element in manifest.root.elements(tag):
                 text = " ".join(element.text().split())

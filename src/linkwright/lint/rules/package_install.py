@@ -1,7 +1,7 @@
 """Rules about files that ``setup.py`` or ``CMakeLists.txt`` does not install or cannot find.
 
-If the installed files of a build file are not known (a value that only CMake knows, a command of another package),
-the rules about missing files do not apply.
+The rules about missing files do not apply if it is not known which files are installed, because of a value that only
+CMake knows or a command of another package.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class PatternMatchesNothing(PackageRule):
 
     ## Why
 
-    `glob` does not report that it finds nothing, so the intended files are missing after the build: a launch file or an
+    `glob` does not report that it finds nothing, so the intended files are missing after the build. A launch file or an
     include then fails with "no such file". A misspelt folder is the usual cause. If another pattern finds files in the
     same folder, the finding is an information.
 
@@ -63,7 +63,7 @@ class PatternMatchesNothing(PackageRule):
     name = "pattern-matches-nothing"
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """Yield the findings in a package."""
+        """Yield a finding for each pattern in ``setup.py`` that matches no file."""
         setup = package.setup
         if setup is None:
             return
@@ -94,9 +94,10 @@ class FolderNotInstalled(PackageRule):
 
     ## Why
 
-    ROS looks in the share folder of the installed package, not in the sources. A launch file or description cannot find
-    a file that is not installed. Folders with unusual names count if a launch file of the package looks for a file in
-    them. For a folder of YAML and RViz files that no launch file of the package reads, the finding is an information.
+    ROS searches the share folder of the installed package, not the sources, so launch files and descriptions do not
+    find a file that is not installed. A folder with an unusual name is only reported if a launch file of the package
+    uses a file in the folder. For a folder of YAML and RViz files that no launch file of the package reads, the finding
+    is an information.
 
     ## Example
 
@@ -122,7 +123,7 @@ class FolderNotInstalled(PackageRule):
     name = "folder-not-installed"
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """Yield the findings in a package."""
+        """Yield a finding for each shared folder that is not installed."""
         if package.setup is not None and package.cmake is None:
             yield from self._by_setup(package, package.setup)
         elif package.cmake is not None and package.setup is None:
@@ -168,7 +169,7 @@ class FolderNotInstalled(PackageRule):
             yield self.report(message, span=span, source=cmake.source, hint=hint, severity=severity)
 
     def _severity(self, package: PackageContext, folders: Iterable[str]) -> Severity:
-        """Return the severity: an information for settings that no launch file of the package reads."""
+        """Return the severity, an information for settings that no launch file of the package reads."""
         inside = tuple(f"{folder}/" for folder in folders)
         held = [file for file in package.files if file.startswith(inside) and _is_shared(file)]
         is_unread = not any(path.startswith(inside) for path in _paths_named_by_launch_files(package))
@@ -180,7 +181,7 @@ class FileNotInstalled(PackageRule):
 
     ## Why
 
-    The file works from the sources but is missing after the build.
+    The file is found in the sources but is missing after the build.
 
     ## Example
 
@@ -201,7 +202,7 @@ class FileNotInstalled(PackageRule):
     name = "file-not-installed"
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """Yield the findings in a package."""
+        """Yield a finding for each description or launch file that the pattern for its folder omits."""
         setup = package.setup
         if setup is None or package.cmake is not None or not setup.is_complete:
             return
@@ -230,7 +231,7 @@ class InstalledFileMissing(PackageRule):
 
     ## Why
 
-    The build stops there.
+    The build stops with an error at the missing file.
 
     ## Example
 
@@ -250,7 +251,7 @@ class InstalledFileMissing(PackageRule):
     severity = Severity.ERROR
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """Yield the findings in a package."""
+        """Yield a finding for each missing file or folder that a build file installs."""
         setup, cmake = package.setup, package.cmake
         if setup is not None:
             for item in setup.installed:
@@ -275,7 +276,10 @@ class InstalledFileMissing(PackageRule):
 
 
 def _exists_or_is_generated(package: PackageContext, path: str) -> bool:
-    """Return whether a file or folder is among the sources, or is created before the package is installed."""
+    """Return whether a path is among the sources or is created before the installation.
+
+    Files that git ignores, and files that CMake creates, count as created.
+    """
     place = package.folder / path
     is_ignored = is_ignored_by_git(place) or is_ignored_by_git(place / "_")
     return package.has(path) or is_ignored or is_made_by_cmake(package, path)
@@ -287,7 +291,10 @@ def shared_folders(package: PackageContext) -> list[str]:
 
 
 def _uninstalled_folders(package: PackageContext, is_installed: Callable[[str], bool]) -> list[str]:
-    """Return the folders that are not installed although they are common or used by a launch file."""
+    """Return the shared folders that are not installed.
+
+    Only folders with a usual name, and folders that a launch file uses, are returned.
+    """
     asked = _paths_named_by_launch_files(package)
     return [
         folder
@@ -306,7 +313,10 @@ def _top(folder: str) -> str:
 
 
 def near_folder(package: PackageContext, folder: str) -> str | None:
-    """Return the folder of the package whose name is most similar to a name, or None."""
+    """Return the folder whose name is most similar to that of a missing folder, or None.
+
+    Only folders in the same parent folder are compared. The result is also None if the folder exists.
+    """
     if not folder or package.has(folder):
         return None
     parent = folder.rpartition("/")[0]

@@ -1,4 +1,4 @@
-"""Rules about ``package.xml``, and its agreement with the files next to it."""
+"""Rules about ``package.xml``, and whether it agrees with the files next to it."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _BUILD_FILES = {
 
 
 class PackageRule(Rule, ABC):
-    """The base of rules about packages; they do not apply to a description outside a package."""
+    """The base class of rules about packages, which skip descriptions outside a package."""
 
     scope = Scope.PACKAGE
 
@@ -40,20 +40,20 @@ class PackageRule(Rule, ABC):
 
     @abstractmethod
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """Yield the findings in a package."""
+        """Yield the findings of the rule in a package."""
 
 
 class ManifestRule(PackageRule):
-    """The base of rules about a ``package.xml`` that is well-formed XML."""
+    """The base class of rules about a ``package.xml`` that is well-formed XML."""
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """Yield the findings in a package."""
+        """Yield the findings in the manifest of a package, or nothing if the manifest is malformed."""
         if package.manifest is not None:
             yield from self.check_manifest(package.manifest)
 
     @abstractmethod
     def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
-        """Yield the findings in a manifest."""
+        """Yield the findings of the rule in a manifest."""
 
 
 class ManifestMalformed(PackageRule):
@@ -61,7 +61,7 @@ class ManifestMalformed(PackageRule):
 
     ## Why
 
-    colcon and rosdep do not recognize the package at all, and report little about it.
+    colcon and rosdep do not recognize the package at all, and report little about the reason.
 
     ## Example
 
@@ -82,7 +82,7 @@ class ManifestMalformed(PackageRule):
     severity = Severity.ERROR
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """Yield the findings in a package."""
+        """Yield a finding if the ``package.xml`` of the package is malformed."""
         error = package.manifest_error
         if error is not None:
             found = error.diagnostics[0]
@@ -126,7 +126,7 @@ class ManifestIncomplete(ManifestRule):
     severity = Severity.ERROR
 
     def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
-        """Yield the findings in a manifest."""
+        """Yield the findings about missing elements of a manifest."""
         root = manifest.root
         if root.tag != "package":
             yield self.report(phrase("the root of package.xml is <{tag}>, not <package>", tag=root.tag), root)
@@ -150,7 +150,7 @@ class ManifestVersion(ManifestRule):
 
     ## Why
 
-    REP 149 requires MAJOR.MINOR.PATCH. colcon refuses a package with another form.
+    REP 149 requires the form MAJOR.MINOR.PATCH. colcon refuses a package whose version has another form.
 
     ## Example
 
@@ -170,7 +170,7 @@ class ManifestVersion(ManifestRule):
     severity = Severity.ERROR
 
     def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
-        """Yield the findings in a manifest."""
+        """Yield a finding if the version is not three numbers."""
         version, element = manifest.text("version"), manifest.root.first("version")
         if version and element is not None and not re.fullmatch(r"\d+\.\d+\.\d+", version):
             yield self.report(
@@ -185,10 +185,10 @@ class DependencyRepeated(ManifestRule):
 
     ## Why
 
-    `<depend>` means `<build_depend>`, `<build_export_depend>` and `<exec_depend>` together. catkin_pkg, with which
-    colcon and `ament_package()` read the file, refuses it if one of them names the package, too: the package is not
-    built. The same line twice has no effect, as in files of MoveIt's Setup Assistant; then the finding is an
-    information.
+    `<depend>` combines `<build_depend>`, `<build_export_depend>` and `<exec_depend>`. colcon and `ament_package()` read
+    the file with catkin_pkg. If one of the three elements also names a package of a `<depend>`, catkin_pkg refuses the
+    file, and the package is not built. The same line twice, as in files of MoveIt's Setup Assistant, has no effect, and
+    the finding is only an information.
 
     ## Example
 
@@ -209,7 +209,7 @@ class DependencyRepeated(ManifestRule):
     severity = Severity.ERROR
 
     def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
-        """Yield the findings in a manifest."""
+        """Yield a finding for each repeated dependency in a manifest."""
         generic = {
             dependency.name: dependency for dependency in reversed(manifest.dependencies) if dependency.tag == "depend"
         }
@@ -252,7 +252,7 @@ class DependencyOnItself(ManifestRule):
     severity = Severity.ERROR
 
     def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
-        """Yield the findings in a manifest."""
+        """Yield a finding for each dependency of a package on itself."""
         for dependency in manifest.dependencies:
             if dependency.name == manifest.name:
                 message = phrase("the package '{name}' depends on itself", name=dependency.name)
@@ -266,8 +266,8 @@ class BuildTypeDiffers(PackageRule):
 
     ## Why
 
-    colcon uses `<build_type>`. With `ament_cmake` it looks for a `CMakeLists.txt`, with `ament_python` for a
-    `setup.py`; without a build type, it treats the package as a ROS 1 package.
+    colcon uses `<build_type>`. For `ament_cmake`, it expects a `CMakeLists.txt`, and for `ament_python`, a `setup.py`.
+    Without a build type, it treats the package as a ROS 1 package.
 
     ## Example
 
@@ -291,7 +291,7 @@ class BuildTypeDiffers(PackageRule):
     severity = Severity.ERROR
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """Yield the findings in a package."""
+        """Yield a finding if the build type does not match the build files of a package."""
         manifest = package.manifest
         if manifest is None:
             return

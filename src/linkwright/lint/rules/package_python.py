@@ -1,4 +1,4 @@
-"""Rules about packages built by setuptools: marker, Python package, executables and ``setup.cfg``."""
+"""Rules about packages built with setuptools, such as marker, executables and ``setup.cfg``."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class SetupSyntaxError(PackageRule):
     severity = Severity.ERROR
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """Yield the findings in a package."""
+        """Yield a finding if the ``setup.py`` of a package has a syntax error."""
         setup = package.setup
         if setup is not None and setup.error is not None:
             message = phrase("setup.py is not Python: {message}", message=foreign(setup.error.message))
@@ -61,8 +61,8 @@ class MarkerMissing(PackageRule):
 
     ## Why
 
-    `setup.py` installs it into the package index. Without the file, the build stops. Without the index entry, `ros2
-    run` and `ros2 launch` do not find the package.
+    `setup.py` installs the file into the package index. Without the file, the build stops. Without the index entry,
+    `ros2 run` and `ros2 launch` do not find the package.
 
     ## Example
 
@@ -70,7 +70,7 @@ class MarkerMissing(PackageRule):
 
     ## Use instead
 
-    An empty file `resource/my_robot_description`.
+    Create an empty file `resource/my_robot_description`.
     """
 
     code = "LW825"
@@ -78,7 +78,7 @@ class MarkerMissing(PackageRule):
     severity = Severity.ERROR
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """Yield the findings in a package."""
+        """Yield a finding if the marker file of a package is missing."""
         setup = package.setup
         if setup is None or not is_ament_python(package):
             return
@@ -101,8 +101,8 @@ class MarkerNotInstalled(PackageRule):
 
     ## Why
 
-    ROS 2 finds an installed package by a file with its name in the index, and tools read its `package.xml` from the
-    share folder. Currently, colcon adds both, with a warning that this will change.
+    ROS 2 finds an installed package by a marker file with the name of the package in the index, and tools read the
+    `package.xml` in the share folder. Currently, colcon adds both files, with a warning that this will change.
 
     ## Example
 
@@ -127,7 +127,7 @@ class MarkerNotInstalled(PackageRule):
     name = "marker-not-installed"
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """Yield the findings in a package."""
+        """Yield a finding for the marker and for the ``package.xml`` if they are not installed."""
         setup = package.setup
         if setup is None or not setup.call or not setup.is_complete or not is_ament_python(package):
             return
@@ -155,7 +155,7 @@ class EntryPointMissing(PackageRule):
 
     ## Why
 
-    The build does not report it; `ros2 run` fails with an import error.
+    The build does not report the mistake, and `ros2 run` fails with an import error.
 
     ## Example
 
@@ -175,7 +175,7 @@ class EntryPointMissing(PackageRule):
     severity = Severity.ERROR
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """Yield the findings in a package."""
+        """Yield a finding for each executable whose module or function does not exist."""
         setup = package.setup
         if setup is None:
             return
@@ -221,7 +221,7 @@ class PythonPackageMissing(PackageRule):
 
     ## Use instead
 
-    An empty file `my_robot_description/__init__.py`; or `packages=find_packages(exclude=['test'])`.
+    Create an empty file `my_robot_description/__init__.py`, or write `packages=find_packages(exclude=['test'])`.
     """
 
     code = "LW828"
@@ -229,7 +229,7 @@ class PythonPackageMissing(PackageRule):
     severity = Severity.ERROR
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """Yield the findings in a package."""
+        """Yield a finding for each Python package in ``setup.py`` whose folder does not exist."""
         setup = package.setup
         if setup is None or setup.packages is None or "package_dir" in setup.source.text:
             return
@@ -246,8 +246,8 @@ class SetupCfgDiffers(PackageRule):
 
     ## Why
 
-    Setuptools installs executables into `bin`. `ros2 run` and launch files look in `lib/NAME`, and report that the
-    executable is not found.
+    By default, setuptools installs executables into `bin`. `ros2 run` and launch files search `lib/NAME`, and report
+    that the executable is not found.
 
     ## Example
 
@@ -267,7 +267,7 @@ class SetupCfgDiffers(PackageRule):
     name = "setup-cfg-differs"
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """Yield the findings in a package."""
+        """Yield a finding if ``setup.cfg`` installs the executables into another folder."""
         setup = package.setup
         if setup is None or not setup.entry_points or not is_ament_python(package):
             return

@@ -1,7 +1,7 @@
 """Rules about static stability: wheels on the ground, and the centre of mass above them.
 
-Everything is at rest, with all joints at zero. Wheels and casters are recognised by their names, and their contacts
-with the ground are computed from their cylinders and spheres. If one has only a mesh, nothing is reported.
+The robot is at rest, with all joints at zero. Wheels and casters are recognised by their names, and their contacts with
+the ground are computed from their cylinders and spheres. If a wheel or caster has only a mesh, nothing is reported.
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ class Contact(NamedTuple):
 
     Attributes:
         link: the link of the wheel or caster.
-        place: its lowest point in the frame of the base, in m.
-        is_wheel: whether it is a wheel and not a caster.
+        place: the lowest point of the link in the frame of the base, in m.
+        is_wheel: whether the link is a wheel and not a caster.
     """
 
     link: Link
@@ -43,7 +43,10 @@ class Contact(NamedTuple):
 
 
 def contacts(subject: Subject) -> list[Contact] | None:
-    """Return a robot's contacts with the ground; None if there is no robot or a wheel cannot be measured."""
+    """Return a robot's contacts with the ground, or None if they are not known.
+
+    They are not known without a robot, or if a wheel or caster cannot be measured.
+    """
     robot, frames = subject.robot, subject.frames
     if robot is None:
         return None
@@ -72,9 +75,9 @@ class WheelsNotLevel(Rule):
 
     ## Why
 
-    A driven wheel in the air turns without moving the robot, and a robot on two wheels and one corner of its body turns
-    in circles. The lowest points of all wheels and casters should be in one plane. Wheels on a joint that lifts them,
-    such as the rockers of a rover, adapt to the ground and are not reported.
+    A driven wheel in the air turns without moving the robot. A robot that rests on two wheels and a corner of its body
+    drives in circles. The lowest points of all wheels and casters should be in one plane. Wheels on a joint that can
+    lift them, such as a rocker of a rover, adapt to the ground and are not reported.
 
     ## Example
 
@@ -82,7 +85,7 @@ class WheelsNotLevel(Rule):
 
     ## Use instead
 
-    The same height for both, and a caster whose lowest point is level with that of the wheels.
+    Use the same height for both wheels, and a caster whose lowest point is level with the lowest points of the wheels.
     """
 
     code = "LW390"
@@ -118,9 +121,9 @@ class WheelsNotLevel(Rule):
 
 
 def _lifted_wheels(subject: Subject) -> set[str]:
-    """Return the wheels and casters that a joint between them and the body can lift.
+    """Return the names of the wheels and casters that a joint above them can lift.
 
-    A joint that steers, which turns about z, does not count.
+    Steering joints, which rotate about z, do not count.
     """
     robot, frames = subject.robot, subject.frames
     found: set[str] = set()
@@ -150,7 +153,7 @@ class CenterBeyondWheels(Rule):
 
     ## Use instead
 
-    A caster on the side where the mass is.
+    Add a caster on the side of the mass.
     """
 
     code = "LW391"
@@ -194,9 +197,9 @@ class CenterBeyondWheels(Rule):
 
 
 def _depth(shape: object, upward: float) -> float | None:
-    """Return how far a shape extends below its middle; None if it is not the shape of a wheel.
+    """Return how far a wheel's shape extends below its centre in m, or None for other shapes.
 
-    `upward` is the upward component of its z axis.
+    `upward` is the upward component of the shape's z axis.
     """
     if isinstance(shape, Sphere):
         return shape.radius
@@ -206,7 +209,7 @@ def _depth(shape: object, upward: float) -> float | None:
 
 
 def _center_of_mass(robot: Robot, frames: Mapping[str, Placement]) -> Point | None:
-    """Return the x and y of a robot's centre of mass in the base frame; None if it has no mass."""
+    """Return x and y of a robot's centre of mass in the base frame in m; None if it is massless."""
     base = frames.get("base_link", frames[robot.root])
     total = x = y = 0.0
     for name, link in robot.links.items():
@@ -219,9 +222,9 @@ def _center_of_mass(robot: Robot, frames: Mapping[str, Placement]) -> Point | No
 
 
 def _hull(points: Sequence[Point]) -> list[Point]:
-    """Return the corners of the convex hull, counter-clockwise; fewer than three for a line.
+    """Return the corners of the convex hull in counter-clockwise order.
 
-    The algorithm is Andrew's monotone chain.
+    There are fewer than three corners if all points are on a line. The algorithm is Andrew's monotone chain.
     """
     ordered = sorted(set(points))
 
@@ -237,9 +240,10 @@ def _hull(points: Sequence[Point]) -> list[Point]:
 
 
 def _distance_outside(point: Point, corners: Sequence[Point]) -> float:
-    """Return the distance of a point outside a convex polygon.
+    """Return the distance of a point from a convex polygon, or 0 if the point is inside.
 
-    It is measured from the line of the edge that the point exceeds most.
+    The distance is measured from the line through the edge that the point exceeds most. The corners are
+    counter-clockwise.
     """
     farthest = 0.0
     for start, end in zip(corners, [*corners[1:], corners[0]], strict=True):

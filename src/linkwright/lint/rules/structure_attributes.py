@@ -43,7 +43,7 @@ class MisspeltAttribute(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every unread attribute whose name is similar to that of a missing attribute."""
+        """Report every unread attribute whose name is similar to that of an absent URDF attribute."""
         hints = hints_of_reader(subject)
         for place, attribute in subject.structure.unknown_attributes:
             meant = meant_attribute(place, attribute)
@@ -66,8 +66,8 @@ class UnknownAttribute(Rule):
 
     ## Why
 
-    urdfdom ignores it, so it does not have the intended effect. Attributes with a prefix, and names that do not occur
-    in URDF at all, such as those for a vendor's software, are not reported.
+    urdfdom ignores the attribute, so it does not have the intended effect. Attributes with a prefix, and names that do
+    not occur in URDF at all, such as those for a vendor's software, are not reported.
 
     ## Example
 
@@ -77,7 +77,7 @@ class UnknownAttribute(Rule):
 
     ## Use instead
 
-    Remove it.
+    Remove the attribute.
     """
 
     code = "LW108"

@@ -1,4 +1,4 @@
-"""Rules about elements that URDF readers ignore: misspelt, in the wrong place, or unknown."""
+"""Rules about elements that URDF readers ignore: misspelt, misplaced or unknown ones."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class MisspeltElement(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every unread element whose name is similar to that of an element allowed there."""
+        """Report every unread element that probably misspells an element allowed in its parent."""
         reported = hints_of_reader(subject)
         for place, child in subject.structure.unknown_elements:
             meant = meant_element(place.rule, child)
@@ -69,8 +69,8 @@ class MisplacedElement(Rule):
 
     ## Why
 
-    An `<origin>` inside `<geometry>` does not move the shape, and a `<mass>` directly in a link gives it no mass:
-    urdfdom silently ignores them.
+    urdfdom silently ignores a misplaced element. An `<origin>` inside `<geometry>` does not move the shape, and a
+    `<mass>` directly in a link does not give the link a mass.
 
     ## Example
 
@@ -98,7 +98,7 @@ class MisplacedElement(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every element that is known in other places; another rule checks materials in collisions."""
+        """Report every unread URDF element that other parents allow, except materials in collisions."""
         reported = hints_of_reader(subject)
         for place, child in subject.structure.unknown_elements:
             homes = HOMES.get(child.tag, ())
@@ -115,14 +115,15 @@ class MisplacedElement(Rule):
 
 
 def _is_no_offset(origin: Element) -> bool:
-    """Return whether an origin would have no effect even if it were read."""
+    """Return whether an origin is zero, so that it would have no effect even if it were read."""
     return not any(float(value) for name in ("xyz", "rpy") for value in values(origin, name))
 
 
 def _nearest_homes(homes: Sequence[str], place: Place) -> Sequence[str]:
-    """Return the possible parents of a misplaced element that are closest to its present place.
+    """Return the allowed parents of a misplaced element that are closest to its current parent.
 
-    These are parents inside its present parent, or else the parent's own parent, or else all possible parents.
+    The closest ones are children of the current parent, then the parent of the current parent, then all allowed
+    parents.
     """
     around = place.parent.tag if place.parent is not None else ""
     inside = [home for home in homes if home in place.rule.child_rules]
@@ -134,9 +135,9 @@ class UnknownElement(Rule):
 
     ## Why
 
-    urdfdom ignores it, so it does not have the intended effect: SDF's `<max_contacts>` has no effect in a
-    `<collision>`. Elements directly in `<robot>`, and names that no format related to URDF has, such as those for a
-    vendor's software, are not reported.
+    urdfdom ignores the element, so it does not have the intended effect. For example, SDF's `<max_contacts>` has no
+    effect in a `<collision>`. Elements directly in `<robot>` are not reported. Neither are names that do not occur in
+    any format related to URDF, such as those for a vendor's software.
 
     ## Example
 
@@ -148,7 +149,7 @@ class UnknownElement(Rule):
 
     ## Use instead
 
-    Remove it, or move it into a `<gazebo reference="arm">` if a simulator should read it.
+    Remove the element, or move it into a `<gazebo reference="arm">` if a simulator should read it.
     """
 
     code = "LW107"
@@ -180,8 +181,9 @@ class MaterialInCollision(Rule):
 
     ## Why
 
-    Collision shapes have no colour: the material is not read, and a material that is defined only there does not exist
-    elsewhere. This is harmless if a macro writes the same content for both, so the rule is off by default.
+    Collision shapes have no colour, so the material is not read. A material that is defined only in a collision cannot
+    be used elsewhere. Some macros write the same content for visuals and collisions, which is harmless, so the rule is
+    off by default.
 
     ## Example
 

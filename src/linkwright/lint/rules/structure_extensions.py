@@ -19,8 +19,8 @@ class MisspeltExtension(Rule):
 
     ## Why
 
-    URDF readers pass these parts on to programs that ignore unknown elements: a `<command_interfce>` is an interface
-    that no controller can claim.
+    URDF readers pass these elements on to other programs, which ignore unknown content. With a `<command_interfce>`,
+    the joint has no command interface that a controller can claim.
 
     ## Example
 
@@ -42,7 +42,7 @@ class MisspeltExtension(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every element and attribute in these parts whose name misspells a known one."""
+        """Report every element and attribute in the extensions whose name misspells a known one."""
         for top in subject.elements():
             if top.tag not in CHILDREN:
                 continue

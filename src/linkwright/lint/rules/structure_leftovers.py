@@ -17,7 +17,7 @@ class XacroInUrdf(Rule):
 
     ## Why
 
-    It is not evaluated: tools look for the mesh in a folder named `$(find my_robot)`.
+    The expression is not evaluated. For example, tools search for the mesh in a folder named `$(find my_robot)`.
 
     ## Example
 
@@ -30,7 +30,7 @@ class XacroInUrdf(Rule):
     ## Use instead
 
     Give the file the extension `.urdf.xacro`, declare `xmlns:xacro="http://www.ros.org/wiki/xacro"` on `<robot>`, and
-    expand it.
+    expand the file with xacro.
     """
 
     code = "LW114"
@@ -64,7 +64,7 @@ class StrayText(Rule):
 
     ## Why
 
-    URDF has all its values in attributes; a text such as `<mass>3</mass>` or a forgotten `-->` is not read.
+    In URDF, all values are in attributes. A text, such as in `<mass>3</mass>` or after a forgotten `-->`, is not read.
 
     ## Example
 
@@ -75,7 +75,7 @@ class StrayText(Rule):
 
     ## Use instead
 
-    Make it a comment, `<!-- 3 kg -->`, or remove it.
+    Turn the text into a comment, `<!-- 3 kg -->`, or remove it.
     """
 
     code = "LW116"
@@ -83,7 +83,10 @@ class StrayText(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every text that is not blank, unless the reader reports a missing value at the same element."""
+        """Report every text that is not blank.
+
+        A text is left out if the reader reports a missing value at the same element.
+        """
         reported = {found.span for found in subject.reading.diagnostics}
         for place in subject.structure.places:
             texts = [child for child in place.element.children if isinstance(child, Text) and child.data.strip()]
@@ -114,8 +117,8 @@ class EmptyName(Rule):
 
     ## Why
 
-    urdfdom accepts it, and then the frame has no name: tf2 refuses frames without a name, and joint states cannot be
-    matched.
+    urdfdom accepts an empty name. However, tf2 refuses frames without a name, and joint states cannot be matched to a
+    joint without a name.
 
     ## Example
 

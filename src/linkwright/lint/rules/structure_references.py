@@ -1,4 +1,4 @@
-"""Rules about references from ``<gazebo>``, ``<transmission>`` and ``<ros2_control>`` to links and joints."""
+"""Rules about links and joints named in ``<gazebo>``, ``<transmission>``, ``<ros2_control>``."""
 
 from __future__ import annotations
 
@@ -26,12 +26,18 @@ def _names(subject: Subject, tag: str) -> set[str]:
 
 
 def _without_siblings(name: str, known: Iterable[str]) -> list[str]:
-    """Return the known names that contain the same numbers as a name; ``arm_1`` never means ``arm_2``."""
+    """Return the known names that contain the same numbers as a name.
+
+    Other names are siblings: ``arm_1`` is not a misspelling of ``arm_2``.
+    """
     return [each for each in known if _NUMBER.findall(each) == _NUMBER.findall(name)]
 
 
 def _kind_meant(gazebo: Element, name: str) -> str:
-    """Return the kind that a `<gazebo>` refers to, ``link`` or ``joint``, by its content, then its name."""
+    """Return what a `<gazebo>` probably refers to: ``link``, ``joint``, or empty if unknown.
+
+    The content of the `<gazebo>` decides, or else the name.
+    """
     held = {child.tag for child in gazebo.elements()}
     if held & OF_JOINTS:
         return "joint"
@@ -41,12 +47,12 @@ def _kind_meant(gazebo: Element, name: str) -> str:
 
 
 def _is_left_over(gazebo: Element, name: str) -> bool:
-    """Return whether a `<gazebo>` without its link seems to belong to a part that the robot does not have."""
+    """Return whether a `<gazebo>` with an unknown reference seems to belong to an absent part."""
     return _UNFILLED.isdisjoint(name) and not any(child.tag in _MISSED for child in gazebo.elements())
 
 
 def _control_joints(subject: Subject) -> Iterator[tuple[Element, Element]]:
-    """Yield the joints of every ``<ros2_control>``, each with its ``<ros2_control>``."""
+    """Yield every ``<ros2_control>`` with each of its joints."""
     for system in subject.elements("ros2_control"):
         for joint in system.elements("joint"):
             yield system, joint
@@ -57,9 +63,9 @@ class GazeboReferenceUnknown(Rule):
 
     ## Why
 
-    Gazebo silently drops its content: the wheel has no friction, and the camera has no sensor. The finding is an
-    information if no name is similar, only colours and surfaces are lost, and most references of the description are
-    valid: then the reference probably belongs to a part that this robot does not have.
+    Gazebo silently drops the content of the element, so a wheel has no friction, or a camera has no sensor. The finding
+    is only an information if the reference probably belongs to a part that this robot does not have: no name is
+    similar, only colours and surfaces are lost, and most references of the description are valid.
 
     ## Example
 
@@ -118,7 +124,7 @@ class TransmissionJointUnknown(Rule):
 
     ## Use instead
 
-    Write the name of the joint as it is in the description.
+    Write the name of the joint as in the description.
     """
 
     code = "LW121"
@@ -146,8 +152,8 @@ class ControlJointUnknown(Rule):
 
     ## Why
 
-    The hardware offers interfaces for a joint that the robot does not have: its state is published but no frame moves,
-    and gz_ros2_control skips the joint.
+    The hardware offers interfaces for a joint that the robot does not have. The state of the joint is published, but no
+    frame moves, and gz_ros2_control skips the joint.
 
     ## Example
 
@@ -158,7 +164,7 @@ class ControlJointUnknown(Rule):
 
     ## Use instead
 
-    Write the name of the joint as it is in the description.
+    Write the name of the joint as in the description.
     """
 
     code = "LW122"
@@ -168,7 +174,7 @@ class ControlJointUnknown(Rule):
         """Report every joint of ros2_control that the robot does not have."""
         known = _names(subject, "joint")
         if not known:
-            return  # a file that describes only the hardware
+            return  # a file without joints describes only the hardware
         for _, joint in _control_joints(subject):
             name = joint.attributes.get("name")
             if name and name not in known:
@@ -188,8 +194,8 @@ class ControlInterfaceMisspelt(Rule):
 
     ## Why
 
-    Interfaces are matched by their names: a controller that asks for `elbow/position` does not find `elbow/positon` and
-    is not activated.
+    Interfaces are matched by their names. A controller that requires `elbow/position` does not find `elbow/positon`,
+    and is not activated.
 
     ## Example
 
@@ -260,10 +266,10 @@ class ControlPluginMissing(Rule):
         for system in subject.elements("ros2_control"):
             hardware = system.first("hardware")
             if hardware is None and any(misspelling_of(child.tag, ["hardware"]) for child in system.elements()):
-                continue  # misspelt, which another rule reports
+                continue  # a misspelt <hardware>, which another rule reports
             plugin = hardware.first("plugin") if hardware is not None else None
             if plugin is None and ("<hardware" if hardware is None else "<plugin") in _written(system):
-                continue  # the file has one, in a branch that xacro left out
+                continue  # the file has this element in a branch that xacro left out
             if plugin is None or not plugin.text().strip():
                 missing = "<hardware>" if hardware is None else "<plugin>"
                 yield self.report(
@@ -280,7 +286,7 @@ class ControlPluginMissing(Rule):
 
 
 def _written(element: Element) -> str:
-    """Return the element as written in its file, including the parts that xacro omitted."""
+    """Return the text of an element in its file, including the parts that xacro left out."""
     found = element_range(element)
     return "" if element.source is None or found is None else element.source.text[slice(*found)]
 
@@ -290,7 +296,7 @@ class ControlJointRepeated(Rule):
 
     ## Why
 
-    Both entries offer interfaces with the same names, which the resource manager refuses.
+    Both elements offer interfaces with the same names, which the resource manager refuses.
 
     ## Example
 
@@ -310,7 +316,7 @@ class ControlJointRepeated(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every further joint with the same name."""
+        """Report every joint after the first one with the same name in a ``<ros2_control>``."""
         for system in subject.elements("ros2_control"):
             first: dict[str, Element] = {}
             for joint in system.elements("joint"):
@@ -331,7 +337,7 @@ class ControlOfFixedJoint(Rule):
 
     ## Why
 
-    The joint ignores all commands. Usually, the type was changed for a test.
+    A fixed joint ignores all commands. Usually, the author made the joint fixed for a test.
 
     ## Example
 
@@ -349,7 +355,7 @@ class ControlOfFixedJoint(Rule):
     name = "control-of-fixed-joint"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every command interface of a joint that does not move."""
+        """Report every command interface of a fixed joint."""
         fixed = {joint.name: joint for joint in subject.joints if joint.type == "fixed"}
         for _, entry in _control_joints(subject):
             joint = fixed.get(entry.attributes.get("name", ""))
@@ -357,7 +363,7 @@ class ControlOfFixedJoint(Rule):
             if joint is None or command is None or joint.element is None:
                 continue
             if joint.element.attributes.get("type") != "fixed":
-                continue  # an invalid type, which the reader reports
+                continue  # the reader reports an invalid type
             yield self.report(
                 phrase("<ros2_control> commands joint '{name}', which is fixed", name=joint.name),
                 command,
@@ -371,9 +377,10 @@ class TransmissionIgnored(Rule):
 
     ## Why
 
-    This is the form of ROS 1. ros2_control and its Gazebo plugins only read joints, interfaces and transmissions inside
-    `<ros2_control>`. Packages that build with catkin, the build tool of ROS 1, robots that have both forms, and files
-    outside a package, which may be for ROS 1, are not reported.
+    A `<transmission>` in `<robot>` is the form of ROS 1. ros2_control and its Gazebo plugins only read joints,
+    interfaces and transmissions inside `<ros2_control>`. Robots that have both forms are not reported. Neither are
+    files that may be for ROS 1: those in packages built with catkin, the build tool of ROS 1, and those outside a
+    package.
 
     ## Example
 

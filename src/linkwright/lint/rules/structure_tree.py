@@ -1,4 +1,4 @@
-"""Rules about the whole robot: the tree of links, repeated elements, and a single shape."""
+"""Rules about the whole robot: its tree of links, repeated elements, and its version."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class NothingToSee(Rule):
 
     ## Why
 
-    RViz and simulators show nothing. Usually an include or a macro call is missing, or a condition is false.
+    RViz and simulators show nothing. Usually, an include or a macro call is missing, or a condition is false.
 
     ## Example
 
@@ -30,8 +30,8 @@ class NothingToSee(Rule):
 
     ## Use instead
 
-    Give the links a `<visual>`. If nothing moves and no link contains anything, the description is probably only for
-    frames, such as those between two cameras, and the finding is an information.
+    Give the links a `<visual>`. If no joint moves and all links are empty, the description probably only defines
+    frames, such as those of two cameras, and the finding is an information.
     """
 
     code = "LW102"
@@ -41,9 +41,9 @@ class NothingToSee(Rule):
         """Report a robot whose links have neither visuals nor collisions."""
         robot = subject.robot
         if robot is None or len(robot.links) < 2 or any(link.inertial for link in robot.links.values()):
-            return  # a single link, or a model for dynamics, which needs no shapes
+            return  # a single link, or a model for dynamics, needs no shapes
         if any(subject.elements("ros2_control")):
-            return  # a bench setup, which describes only hardware
+            return  # a bench setup describes only hardware
         if not any(link.visuals or link.collisions for link in robot.links.values()) and not any(
             link.element is not None and (link.element.first("visual") or link.element.first("collision"))
             for link in robot.links.values()
@@ -64,8 +64,8 @@ class DisconnectedPart(Rule):
 
     ## Why
 
-    A description is one tree. urdfdom refuses several roots, and the reader reports the second one (URDF152). This rule
-    names every further part, its links, and the joint that would connect it.
+    A description must be one tree, and urdfdom refuses several roots. The reader reports the second root (URDF152).
+    This rule reports every further part with its links, and the joint that would connect the part.
 
     ## Example
 
@@ -90,9 +90,9 @@ class DisconnectedPart(Rule):
     severity = Severity.ERROR
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every separate part at its topmost link.
+        """Report every disconnected part at its topmost link.
 
-        The part with the most links and the part that the reader reports are left out.
+        The part with the most links is left out, and so is the part that the reader reports.
         """
         links = {link.name: link for link in subject.links if link.name}
         joints = [joint for joint in subject.joints if joint.parent in links and joint.child in links]
@@ -134,8 +134,8 @@ class RepeatedElement(Rule):
 
     ## Why
 
-    urdfdom reads the first `<origin>`, `<geometry>`, `<limit>`, ... of its parent and ignores the others. A change to
-    the second one has no effect.
+    urdfdom reads the first `<origin>`, `<geometry>`, `<limit>` and so on in each parent and ignores the others. A
+    change to the second element has no effect.
 
     ## Example
 
@@ -147,7 +147,7 @@ class RepeatedElement(Rule):
 
     ## Use instead
 
-    Keep the intended one.
+    Keep the intended element and remove the other.
     """
 
     code = "LW111"
@@ -178,8 +178,8 @@ class NewerVersion(Rule):
 
     ## Why
 
-    Versions 1.1 and 1.2 require urdfdom 5.1 or newer. The urdfdom of ROS 2 Jazzy and older reads only 1.0 and refuses
-    the whole model.
+    Versions 1.1 and 1.2 require urdfdom 5.1 or newer. The urdfdom of ROS 2 Jazzy and older only reads version 1.0 and
+    refuses the whole model.
 
     ## Example
 
@@ -189,7 +189,8 @@ class NewerVersion(Rule):
 
     ## Use instead
 
-    Write `version="1.0"`, or omit it, until all programs that read the description are newer. Then ignore the rule.
+    Write `version="1.0"`, or omit the attribute. Once all programs that read the description use a newer urdfdom,
+    ignore the rule.
     """
 
     code = "LW113"

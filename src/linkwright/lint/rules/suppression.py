@@ -1,4 +1,4 @@
-"""Rules about comments that suppress findings; the engine reports them, as it knows their effects."""
+"""Rules about comments that suppress findings, which the engine reports."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ class UnusedSuppression(Rule):
 
     ## Why
 
-    The finding that it was written for no longer exists, or never did. If the comment stays in the file, it hides the
-    next finding of this code by accident.
+    The finding for which the comment was written no longer exists, or never did. If the comment stays in the file, it
+    may hide a new finding of this code by accident.
 
     ## Example
 
@@ -22,7 +22,7 @@ class UnusedSuppression(Rule):
 
     ## Use instead
 
-    Remove the comment; `linkwright check --select LW001 --fix FILE` does this.
+    Remove the comment, or let `linkwright check --select LW001 --fix FILE` remove it.
     """
 
     code = "LW001"
@@ -37,7 +37,7 @@ class UnknownSuppression(Rule):
 
     ## Why
 
-    It suppresses nothing, so the finding that it was written for is still reported.
+    Such a comment suppresses nothing, so the finding for which it was written is still reported.
 
     ## Example
 

@@ -22,8 +22,8 @@ class DeprecatedFunction(XacroRule):
     ## Why
 
     `load_yaml`, `abs_filename`, `dotify`, `sorted` and `range` have moved into the groups `xacro` and `python`. With
-    their bare names, every expansion warns, and a future xacro may not know them. A file that calls the function by
-    both names chooses between them to support older releases, and is not reported.
+    the bare names, every expansion prints a warning, and a future xacro may not know them. A file that uses both names
+    of a function supports older releases of xacro, and is not reported.
 
     ## Example
 
@@ -76,7 +76,7 @@ class DeprecatedFunction(XacroRule):
 
 
 def _is_called_by(name: str, file: FileFacts) -> bool:
-    """Return whether a file calls a function of a group by its full name."""
+    """Return whether a file calls a function by its full name, with the group."""
     return file.document.source is not None and f"{name}(" in file.document.source.text
 
 
@@ -85,8 +85,8 @@ class ConstantCondition(XacroRule):
 
     ## Why
 
-    The content is either always included or never. A constant condition is usually left from a trial, and hides the
-    structure of the robot.
+    The content is either always or never included. A constant condition is usually left over from an experiment, and
+    hides the structure of the robot.
 
     ## Example
 
@@ -130,7 +130,8 @@ class UndeclaredArgument(XacroRule):
 
     ## Why
 
-    The expansion fails as soon as the branch is taken. Pedantic: callers may be expected to always set the argument.
+    The expansion fails when the branch is taken and the caller has not set the argument. Pedantic: callers may be
+    expected to always set the argument.
 
     ## Example
 

@@ -1,4 +1,4 @@
-"""The base of rules about xacro files."""
+"""The base class of rules about xacro files."""
 
 from __future__ import annotations
 
@@ -15,7 +15,10 @@ if TYPE_CHECKING:
 
 
 class XacroRule(Rule, ABC):
-    """The base of rules about the xacro files of a description; they report nothing in plain URDF."""
+    """The base class of rules about the xacro files of a description.
+
+    In plain URDF, such rules report nothing.
+    """
 
     holds_for_libraries = True
     of_sources = True
@@ -26,4 +29,4 @@ class XacroRule(Rule, ABC):
 
     @abstractmethod
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
-        """Yield the findings in the files of a description."""
+        """Yield the findings of the rule in the xacro files of a description."""

@@ -43,7 +43,7 @@ class XacroPrefixMissing(Rule):
     ## Why
 
     Without the prefix, the tag is an ordinary element, which xacro copies unchanged and URDF readers ignore. Up to ROS
-    Melodic, xacro accepted such tags, and old descriptions contain them.
+    Melodic, xacro accepted such tags, so old descriptions may contain them.
 
     ## Example
 
@@ -94,7 +94,7 @@ class XacroPrefixMissing(Rule):
 
 
 def _macro_names(documents: Iterable[Iterable[Element]]) -> set[str]:
-    """Return the names of all macros among the elements of some documents, except names of URDF elements."""
+    """Return the names of all macros that some documents define, except names of URDF elements."""
     macros = (
         element.attributes.get("name", "")
         for elements in documents
@@ -113,8 +113,8 @@ class XacroNamespaceMissing(XacroRule):
 
     ## Why
 
-    Without `xmlns:xacro` on its root, a file is plain URDF for every tool that does not look at the file extension: it
-    is not expanded, and its expressions are read as names and numbers. ROS's xacro still expands it. Pedantic.
+    Without `xmlns:xacro` on its root, a tool that ignores the file extension treats the file as plain URDF: it does not
+    expand the file, and reads expressions as names and numbers. Pedantic: ROS's xacro still expands the file.
 
     ## Example
 
@@ -141,7 +141,7 @@ class XacroNamespaceMissing(XacroRule):
         if "xmlns:xacro" in root.attributes or not file.uses:
             return
         if any(_NEEDED.get(element.tag) for element in _described(root)):
-            return  # the prefix is missing, too, which is reported already
+            return  # the prefix is missing, too, which another rule reports
         message = phrase("this file has xacro expressions but does not declare the prefix 'xacro'")
         fix = add_attribute(root, "xmlns:xacro", ADDRESS)
         yield self.report(
@@ -157,7 +157,7 @@ class XacroNamespaceAddress(Rule):
 
     ## Why
 
-    xacro uses only the prefix and accepts any URI, but editors that check the file use the URI. Pedantic.
+    Editors that check the file use the URI. Pedantic: xacro only uses the prefix and accepts any URI.
 
     ## Example
 
@@ -198,7 +198,7 @@ class IncludeAbsolutePath(XacroRule):
 
     ## Why
 
-    The path exists on one machine only. On any other machine, in a container, and after the build, the expansion fails.
+    The path exists on one machine only. On any other machine, or in a container, the expansion fails.
 
     ## Example
 
@@ -279,9 +279,9 @@ class UndeclaredPackage(Rule):
 
     ## Why
 
-    rosdep and colcon know dependencies only from `package.xml`: on a fresh machine, the package is not installed, and
-    the expansion fails. If every use is inside a condition, the package may be optional, and the finding is an
-    information. A package that itself depends on this one cannot be declared, and is not reported.
+    rosdep and colcon only read dependencies from `package.xml`. On a fresh machine, the package is not installed, and
+    the expansion fails. If every use is inside a condition, the package may be optional, and the finding is only an
+    information. A package that itself depends on this package is not reported, because declaring it would form a cycle.
 
     ## Example
 
@@ -340,7 +340,7 @@ class RecursiveMacro(XacroRule):
 
     ## Why
 
-    Once called, the macro never ends, and xacro fails when the calls are nested too deeply.
+    Such a macro never ends, and xacro fails when the calls are nested too deeply.
 
     ## Example
 
@@ -386,8 +386,8 @@ class IncludeOfItself(XacroRule):
 
     ## Why
 
-    xacro has no guard against this: without a condition that ends it, the expansion repeats until the includes are
-    nested too deeply.
+    xacro does not detect such an include. Without a condition that ends the recursion, the expansion continues until
+    the includes are nested too deeply.
 
     ## Example
 
@@ -419,7 +419,8 @@ class MacroDefinedTwice(XacroRule):
 
     ## Why
 
-    The second definition silently replaces the first. Calls before and after it produce different elements.
+    The second definition silently replaces the first. Calls before and after the second definition produce different
+    elements.
 
     ## Example
 
@@ -430,7 +431,7 @@ class MacroDefinedTwice(XacroRule):
 
     ## Use instead
 
-    Give the macros different names, or remove the unintended one.
+    Give the macros different names, or remove the unintended definition.
     """
 
     code = "LW727"
@@ -463,7 +464,7 @@ def _unconditional_call(macro: Definition, file: FileFacts) -> Definition | None
 
 
 def _described(root: Element) -> Iterator[Element]:
-    """Yield the elements of a description, except those of simulators and plugins."""
+    """Yield the elements of a description, except the content for simulators and plugins."""
     waiting = [root]
     while waiting:
         element = waiting.pop()

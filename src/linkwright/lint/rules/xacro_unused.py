@@ -1,8 +1,8 @@
 """Rules about unused definitions in xacro files.
 
-A name counts as used if any file of the description, or any other description file of the package, mentions it
-anywhere. If names may be composed from values, the rules do not apply. They never report files that only contain
-definitions for other files to include.
+A name counts as used if any file of the description, or any other description file of the package, mentions it. The
+rules do not apply if names may be composed from values, or to files that only contain definitions for other files to
+include.
 """
 
 from __future__ import annotations
@@ -42,11 +42,11 @@ class UnusedProperty(XacroRule):
     A user who changes the value expects the robot to change. Often, the place that should use the property contains a
     literal number.
 
-    Only properties of the checked file and properties inside macros are checked: a file of properties for several
-    robots contains more than each robot needs. Mathematical constants, such as `PI`, are not reported, nor is a
-    property that is evaluated immediately, with `lazy_eval="false"`, and calls `xacro.fatal`, `error`, `warning` or
-    `message`. For a property from a table of dimensions, such as `d415_cam_depth_px` next to `d415_cam_depth_py` and
-    `d415_cam_depth_pz`, which are used, the finding is an information, because the table is kept complete.
+    Only properties of the checked file and properties inside macros are checked, because a file of properties for
+    several robots contains more than each robot needs. Mathematical constants, such as `PI`, are not reported. Neither
+    is a property with `lazy_eval="false"` that calls `xacro.fatal`, `error`, `warning` or `message`. If the property
+    belongs to a table of dimensions, the finding is only an information, because such tables are usually complete. An
+    example is an unused `d415_cam_depth_px` next to `d415_cam_depth_py` and `d415_cam_depth_pz`, which are used.
 
     ## Example
 
@@ -94,7 +94,7 @@ class UnusedArgument(XacroRule):
 
     ## Why
 
-    A user who sets it, on the command line or in a launch file, sees no change.
+    A user who sets the argument, on the command line or in a launch file, sees no change.
 
     ## Example
 
@@ -138,10 +138,11 @@ class UnusedMacro(XacroRule):
 
     ## Why
 
-    Its content is missing from the robot. Either the call was forgotten, or the macro is left from an earlier version.
+    The content of the macro is missing from the robot. Either the call was forgotten, or the macro is left over from an
+    earlier version.
 
-    The rule only checks macros of the checked file, and only if that file describes a robot: libraries of macros
-    contain more than each robot needs.
+    The rule only checks macros of the checked file, and only if this file describes a robot, because libraries of
+    macros contain more than each robot needs.
 
     ## Example
 
@@ -186,7 +187,7 @@ class UnusedInclude(XacroRule):
     ## Why
 
     The file neither adds anything to the robot nor defines anything that the description uses. Every expansion reads
-    it, and readers of the description look for its purpose.
+    the file without need, and readers of the description search for its purpose.
 
     ## Example
 
@@ -196,7 +197,7 @@ class UnusedInclude(XacroRule):
 
     ## Use instead
 
-    Call what the file defines, or remove the include.
+    Use the definitions of the file, or remove the include.
     """
 
     code = "LW704"
@@ -228,8 +229,9 @@ class UnusedMacroParameter(XacroRule):
 
     ## Why
 
-    Every call must set it, but its value has no effect. If the parameter is meant for a macro that is called inside, it
-    must be passed on. Usually, it is left from an earlier version, which is harmless.
+    Every call must set the parameter, but its value has no effect. If the parameter is intended for a macro that is
+    called in the body, it must be passed on. Usually, the parameter is left over from an earlier version, which is
+    harmless.
 
     ## Example
 
@@ -255,14 +257,14 @@ class UnusedMacroParameter(XacroRule):
 
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
         if facts.calls_open:
-            return  # macros that are called by a computed name must all accept the same parameters
+            return  # Macros that are called by a computed name must all accept the same parameters.
         shared = _shared_parameters(facts)
         for file in facts.own.values():
             if file.has_bare_tags:
                 continue
             for macro in file.macros:
                 if next(macro.element.elements(), None) is None:
-                    continue  # an empty macro that others with the same name replace
+                    continue  # an empty macro with the parameters of others that replace it
                 yield from (each for name, each in self._of_macro(macro, file, facts) if name not in shared)
 
     def _of_macro(self, macro: Definition, file: FileFacts, facts: XacroFacts) -> Iterator[tuple[str, Diagnostic]]:
@@ -273,11 +275,12 @@ class UnusedMacroParameter(XacroRule):
         for parameter in file.parameters(macro.element):
             name = parameter.name.lstrip("*")
             if parameter.forward:
-                continue  # a call need not pass it
+                continue  # a forwarded parameter need not be set in a call
             if parameter.is_block:
                 is_used = name in blocks or (calls_others and any(name in file.blocks for file in facts.files.values()))
             else:
-                # A called macro sees the properties of its caller, so a name that is used elsewhere may be this one.
+                # A called macro sees the parameters of its caller, so a name that is used elsewhere may be this
+                # parameter.
                 is_used = name in used or is_open or (calls_others and (name in facts.names or facts.is_open))
                 is_used = is_used or (bool(blocks) and name in facts.names)
             if name and not is_used and name.isidentifier():
@@ -292,7 +295,10 @@ class UnusedMacroParameter(XacroRule):
 
 
 def _shared_parameters(facts: XacroFacts) -> set[str]:
-    """Return the parameters that several macros share by convention, whether or not each uses them."""
+    """Return the names of parameters that several macros share by convention.
+
+    A macro need not use such a parameter.
+    """
     taken = Counter(
         name
         for file in facts.files.values()
@@ -303,7 +309,10 @@ def _shared_parameters(facts: XacroFacts) -> set[str]:
 
 
 def _used_inside(macro: Element, file: FileFacts) -> tuple[set[str], set[str], bool]:
-    """Return the names and blocks that a macro's body mentions, and whether it may mention others."""
+    """Return the names and the blocks that a macro's body mentions.
+
+    The third result is whether the body may mention other names, too.
+    """
     names: set[str] = set()
     is_open = False
     for use in (*file.uses_by_macro.get(id(macro), ()), *file.uses_of_parameters.get(id(macro), ())):
@@ -321,7 +330,7 @@ def _used_inside(macro: Element, file: FileFacts) -> tuple[set[str], set[str], b
 
 
 def _shows_message(element: Element) -> bool:
-    """Return whether a property is evaluated where it is defined and then shows a message to the user."""
+    """Return whether a property is evaluated at its definition and shows a message to the user."""
     lazy = element.attributes.get("lazy_eval", "true").strip() not in ("false", "False", "0")
     return (not lazy or "scope" in element.attributes) and bool(_SPEAKING.search(element.attributes.get("value", "")))
 
@@ -329,7 +338,7 @@ def _shows_message(element: Element) -> bool:
 def _is_of_table(definition: Definition, file: FileFacts, used: frozenset[str]) -> bool:
     """Return whether a property belongs to a table of properties, most of which are used.
 
-    The names in such a table, in one file, differ only in the last word.
+    The properties of a table are in one file, and their names differ only in the last word.
     """
     table, _, _ = definition.name.rpartition("_")
     if "_" not in table or misspelling_of(definition.name, used) is not None:
@@ -341,7 +350,7 @@ def _is_of_table(definition: Definition, file: FileFacts, used: frozenset[str]) 
 
 
 def _is_mathematics(value: str) -> bool:
-    """Return whether a value is pi, a fraction or multiple of it, or a degree-radian conversion factor."""
+    """Return whether a value is a multiple of pi, or converts between degrees and radians."""
     if re.fullmatch(r"\$\{[\s\d.*/()-]*\bpi\b[\s\d.*/()-]*\}", value.strip()):
         return True
     try:
@@ -368,7 +377,10 @@ def _hint(name: str, used: frozenset[str], form: str = "${...}") -> Phrase:
 
 
 def _included_paths(facts: XacroFacts) -> dict[int, Path]:
-    """Return the file that was read for each include with a simple file name, by the include's identity."""
+    """Return the path of the file that each include reads, by the `id` of the include's element.
+
+    Only includes with a literal file name are contained.
+    """
     found: dict[int, Path] = {}
     by_name: dict[str, list[Path]] = {}
     for path in facts.files:
@@ -383,7 +395,10 @@ def _included_paths(facts: XacroFacts) -> dict[int, Path]:
 
 
 def _is_switched_off(path: Path, facts: XacroFacts) -> bool:
-    """Return whether a comment contains a call of an included file's macro, which its author can enable."""
+    """Return whether a comment contains a call of a macro that an included file defines.
+
+    The author can enable such a call, so the include is useful.
+    """
     defined = {macro.name for macro in facts.files[path].macros} if path in facts.files else set()
     texts = (file.document.source.text for file in facts.own.values() if file.document.source is not None)
     comments = (comment for text in texts for comment in _COMMENT.findall(text))
@@ -391,9 +406,9 @@ def _is_switched_off(path: Path, facts: XacroFacts) -> bool:
 
 
 def _contributes(path: Path, facts: XacroFacts, paths: dict[int, Path]) -> bool:
-    """Return whether a file or its includes add anything to the robot or define anything used outside.
+    """Return whether a file or its includes add elements to the robot, or define used names.
 
-    An empty file is still to be written, and counts as contributing.
+    An empty file counts as contributing, because it is probably unfinished.
     """
     inside: dict[Path, FileFacts] = {}
     waiting = [path]

@@ -23,7 +23,7 @@ class LiteralChangesType(XacroRule):
     ## Why
 
     xacro converts the values of properties and parameters that look like numbers or truth values: `007` becomes 7 and
-    `true` becomes True. This is useful in a sum, but not in the name of a link.
+    `true` becomes True. The conversion is useful in a sum, but not in the name of a link.
 
     ## Example
 
@@ -95,7 +95,7 @@ class PropertyDefinedTwice(XacroRule):
 
     ## Why
 
-    The first value has no effect. A user who finds and changes it wonders why the robot stays the same.
+    The first value has no effect. If a user changes this value, the robot stays the same.
 
     ## Example
 
@@ -107,7 +107,7 @@ class PropertyDefinedTwice(XacroRule):
 
     ## Use instead
 
-    Keep one of the definitions. If the first is meant as a default, write it last, with `default`:
+    Keep one of the definitions. If the first is intended as a default, write it last, with `default`:
 
     ```xml
     <xacro:property name="wheel_radius" default="0.06"/>
@@ -150,7 +150,7 @@ class PropertyDefinedTwice(XacroRule):
                 return False
         between = [
             call for call in (*file.calls, *file.includes) if first.order < call.order < second.order
-        ]  # their content may use it
+        ]  # the content of a called macro or included file may use the name
         return not between or not (facts.is_open or name in facts.names)
 
 
@@ -159,9 +159,9 @@ class ShadowedProperty(XacroRule):
 
     ## Why
 
-    Inside the macro, the name has a different meaning than outside, and a macro that is called there sees the inner
-    one, because scopes in xacro are dynamic. Pedantic: parameters often have the name of the property that is passed to
-    them.
+    Inside the macro, the name has a different meaning than outside. Because scopes in xacro are dynamic, macros that
+    are called inside also use the inner definition. Pedantic: a parameter often has the name of the property whose
+    value it receives.
 
     ## Example
 
@@ -220,8 +220,8 @@ class ParameterHidesGlobal(XacroRule):
 
     ## Why
 
-    Inside the macro, the name no longer refers to the constant or function, and expressions with it give wrong numbers
-    without any error. Pedantic: xacro already warns about calls of the macro.
+    Inside the macro, the name no longer refers to the constant or function, and expressions with this name have wrong
+    values without any error. Pedantic: xacro already warns about calls of the macro.
 
     ## Example
 
@@ -260,7 +260,7 @@ class ParameterHidesGlobal(XacroRule):
 
 
 def _is_changed_by_literal_rule(value: str) -> bool:
-    """Return whether the conversion of literals changes the text that is written for a value."""
+    """Return whether xacro's conversion of literals changes the text of a value."""
     return "$" not in value and "'" not in value and str(literal(value)) != value
 
 
@@ -269,9 +269,9 @@ def _kind(value: object) -> Phrase:
 
 
 def _use_in_name(name: str, facts: XacroFacts, macro: Element | None) -> tuple[Element, str] | None:
-    """Return a place where ``${name}`` becomes part of a name in an attribute, or None.
+    """Return an element and an attribute in which ``${name}`` becomes part of a name, or None.
 
-    The place is inside the macro, or outside all macros that hide the name.
+    The element is inside `macro` or, if `macro` is None, outside all macros that hide the name.
     """
     for file in facts.files.values():
         for use in file.uses:

@@ -1,7 +1,7 @@
-"""The layout of CDR, for the reader and the writer: alignment as far as it is known in advance, sizes, runs of fields.
+"""The layout of CDR, for the reader and the writer: alignment, sizes, runs of fields.
 
 CDR (OMG, classic, "XCDR1") aligns each primitive to a multiple of its size, counted from the end of the four header
-bytes. After a string or a sequence, the position is known only in part, such as "a multiple of four": generated code
+bytes. After a string or a sequence, the position is known only in part, such as "a multiple of four". Generated code
 then computes the padding only where it may be needed.
 """
 
@@ -20,21 +20,21 @@ DEEPEST_LOOP = 5
 
 
 class Place(NamedTuple):
-    """A position, as far as it is known: its remainder `rest` when divided by `modulus` (1, 2, 4 or 8)."""
+    """A position of which only the remainder `rest` modulo `modulus` (1, 2, 4 or 8) is known."""
 
     modulus: int
     rest: int
 
     def after(self, size: int) -> Place:
-        """Return the position a number of bytes further on."""
+        """Return the position that is `size` bytes further."""
         return Place(self.modulus, (self.rest + size) % self.modulus)
 
     def padding(self, size: int) -> int | None:
-        """Return the number of bytes up to the next multiple of a size; None if it is not known in advance."""
+        """Return the number of bytes up to the next multiple of `size`; None if it is not known."""
         return (-self.rest) % size if self.modulus >= size else None
 
     def met(self, other: Place) -> Place:
-        """Return what is known about the position if it may be either this place or another."""
+        """Return what is known about a position that may be either this one or the other."""
         modulus = min(self.modulus, other.modulus)
         while (self.rest - other.rest) % modulus:
             modulus //= 2
@@ -46,12 +46,12 @@ ANYWHERE = Place(1, 0)
 
 
 class Facts(NamedTuple):
-    """Properties of the layout of a structure.
+    """Properties of the layout of a structure or a field.
 
     Attributes:
         least: the minimum number of bytes on the wire, without padding.
         leaves: the number of primitives, strings and sequences, including those of nested structures.
-        first: the alignment that its first primitive requires.
+        first: the alignment in bytes that the first primitive requires.
     """
 
     least: int

@@ -1,9 +1,9 @@
-"""Compile, for a structure, the function that reads it from CDR.
+"""Compiles the functions that deserialize structures from CDR.
 
-The function unpacks runs of fixed fields, including those of nested structures, with one `struct` call each, directly
-into the slots of the objects; the checks on assignment are not repeated. It trusts no length in the data: none can make
-it read or reserve more than the data contain. All errors that it raises for bad data are listed in
-`linkwright.messages.cdr.values.READ_FAULTS`.
+Such a function unpacks runs of fixed fields, including those of nested structures, with one `struct` call each,
+directly into the slots of the objects. The checks on assignment are not repeated. The function trusts no length in the
+data: no length can make it read or allocate more than the data contain. All errors that it raises for bad data are
+listed in `linkwright.messages.cdr.values.READ_FAULTS`.
 """
 
 from __future__ import annotations
@@ -42,12 +42,12 @@ Order = Literal["<", ">"]
 
 
 def compile_reader(structure: Structure, class_of: ClassOf, order: Order = "<") -> Callable[[bytes], Any]:
-    """Compile the function that creates a message from bytes, including the header.
+    """Compile the function that creates a message from bytes, which include the header.
 
     Args:
         structure: the structure to read.
         class_of: returns the class of a structure.
-        order: ``<`` for little-endian data, ``>`` for big-endian.
+        order: ``<`` for little-endian data, ``>`` for big-endian data.
     """
     code = _ReaderCode(START, class_of, order, known=4)
     name = code.made(structure)
@@ -59,7 +59,10 @@ def compile_reader(structure: Structure, class_of: ClassOf, order: Order = "<") 
 
 
 def _compile_part(structure: Structure, class_of: ClassOf, order: Order) -> Callable[..., Any]:
-    """Compile the function that reads a nested structure at an offset, and returns it and its end."""
+    """Compile the function that reads a nested structure at an offset.
+
+    The function returns the object and the offset of its end.
+    """
     found = _parts.get((structure.type_name, order))
     if found is None:
         code = _ReaderCode(ANYWHERE, class_of, order, known=None)
@@ -72,7 +75,7 @@ def _compile_part(structure: Structure, class_of: ClassOf, order: Order) -> Call
 
 
 class _ReaderCode:
-    """The code of a reader while it is generated.
+    """Generates the code of a reader.
 
     In the code, `p` is the position in the data, including the header, and `e` is the end of the data.
     """
@@ -101,7 +104,7 @@ class _ReaderCode:
     # --- structures and fields ------------------------------------------------------------------------------
 
     def made(self, structure: Structure) -> str:
-        """Generate the creation of an object of the structure's class; return its variable."""
+        """Generate the creation of an object of a structure's class; return the object's variable."""
         name = f"m{next(self._names)}"
         self._line(f"{name} = new({self._given(self._class_of(structure), 'C')})")
         return name
@@ -230,7 +233,10 @@ class _ReaderCode:
         self.place = ANYWHERE
 
     def _repeated(self, field: Field, target: str, length: str) -> None:
-        """Generate a loop, whose start has the alignment that holds for the first and all further iterations."""
+        """Generate a loop over the values of a field.
+
+        At the start of the loop, the code relies only on an alignment that holds in every iteration.
+        """
         one = FieldType(field.type.base, field.type.string_bound)
         self._move_on()
         values, value = f"l{next(self._names)}", f"x{next(self._names)}"
@@ -250,10 +256,13 @@ class _ReaderCode:
             del self._lines[lines:]
         self.place = before
 
-    # --- places and runs ------------------------------------------------------------------------------------
+    # --- positions and runs ---------------------------------------------------------------------------------
 
     def _length(self) -> str:
-        """Generate the reading of the length of a string or a sequence; `p` is after it then."""
+        """Generate the reading of the length of a string or a sequence; return its variable.
+
+        After this code, `p` is the position after the length.
+        """
         name = f"n{next(self._names)}"
         self._primitive("I", 4, name)
         self._move_on()
@@ -278,7 +287,7 @@ class _ReaderCode:
             self.place = self.place.after(padding)
 
     def end_run(self) -> None:
-        """Generate the unpacking of the collected fields."""
+        """Generate the unpacking of the fields in the current run."""
         if not self._run:
             return
         form = struct.Struct(self._order + "".join(code for code, _ in self._run))
@@ -305,7 +314,7 @@ class _ReaderCode:
         return "p" if self._known is None else str(self._known)
 
     def _move_on(self) -> None:
-        """End the run; from here on, only `p` holds the position."""
+        """End the run. In the following code, only `p` holds the position."""
         self.end_run()
         if self._known is not None:
             self._line(f"p = {self._known}")

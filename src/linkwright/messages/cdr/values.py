@@ -1,8 +1,8 @@
-"""Run-time support for generated CDR code: strings, sequences of strings, and the errors for bad data.
+"""Run-time support for generated CDR code: strings, lists of strings, errors for bad data.
 
 Publishers send the same names repeatedly. Therefore the bytes of short strings, and of lists of strings, are cached
-when they are written, and lists of strings are cached by their bytes when they are read: the names of twelve joints
-cost one comparison.
+when they are written, and lists of strings are cached by their bytes when they are read. This way, reading the names of
+twelve joints costs one comparison.
 """
 
 from __future__ import annotations
@@ -28,7 +28,10 @@ READ_FAULTS = (struct.error, IndexError, ValueError)
 
 
 class DataFaultError(ValueError):
-    """Raised when bytes are not a message; its text is the reason. It never leaves this package."""
+    """Raised inside this package when bytes are not a message; the error's text is the reason.
+
+    Callers of the package receive another error instead.
+    """
 
 
 class Texts(dict[str, bytes]):
@@ -50,9 +53,9 @@ class Texts(dict[str, bytes]):
 
 
 class TextLists(dict[tuple[str, ...], bytes]):
-    """A cache of encoded lists of strings: their number, then each as in `Texts`.
+    """A cache of encoded lists of strings: their number, then each string as in `Texts`.
 
-    Only the last is padded to `alignment`.
+    Only the last string is padded to `alignment`.
     """
 
     def __init__(self, alignment: int) -> None:
@@ -80,7 +83,7 @@ _blocks: dict[bytes, tuple[bytes, list[str], int]] = {}
 
 
 def read_texts(data: bytes, at: int, count: int) -> tuple[list[str], int]:
-    """Read a list of strings.
+    """Read a list of strings from a message.
 
     Args:
         data: the message.
@@ -88,7 +91,7 @@ def read_texts(data: bytes, at: int, count: int) -> tuple[list[str], int]:
         count: the number of strings.
 
     Returns:
-        The strings, and the offset of their end.
+        The strings, and the offset of the end of the last one.
     """
     key = data[at - 4 : at + _KEY]
     kept = _blocks.get(key)
@@ -119,7 +122,7 @@ def read_texts(data: bytes, at: int, count: int) -> tuple[list[str], int]:
 
 
 def read_numbers(code: str, data: bytes, start: int, end: int) -> array[Any]:
-    """Return the numbers in a range of a message; check that the message is long enough."""
+    """Return the numbers in a range of a message, after checking the message's length."""
     if end > len(data):
         truncated()
     if end - start <= _COPIED_AT_ONCE:
@@ -130,7 +133,7 @@ def read_numbers(code: str, data: bytes, start: int, end: int) -> array[Any]:
 
 
 def read_bools(data: bytes, start: int, end: int) -> list[bool]:
-    """Return the bools in a range of a message; check that the message is long enough."""
+    """Return the bools in a range of a message, after checking the message's length."""
     raw = data[start:end]
     if len(raw) < end - start:
         truncated()
@@ -140,17 +143,23 @@ def read_bools(data: bytes, start: int, end: int) -> list[bool]:
 
 
 def read_bytes(data: bytes, start: int, end: int) -> list[bytes]:
-    """Return the single bytes in a range of a message; check that the message is long enough."""
+    """Return the single bytes in a range of a message, after checking the message's length."""
     if end > len(data):
         truncated()
     return [data[at : at + 1] for at in range(start, end)]
 
 
 def read_wide_text(data: bytes, at: int, count: int, order: str) -> tuple[str, int]:
-    """Read a wide string with a number of UTF-16 units, each in four bytes and without a terminator.
+    """Read a wide string of UTF-16 units, each in four bytes and without a terminator.
 
-    This is the format of rosidl_typesupport_fastrtps, for Fast DDS and Zenoh, up to Kilted; rmw_cyclonedds_cpp adopted
-    it.
+    This is the format of rosidl_typesupport_fastrtps, for Fast DDS and Zenoh, up to Kilted. rmw_cyclonedds_cpp has
+    adopted it.
+
+    Args:
+        data: the message.
+        at: the offset of the first unit.
+        count: the number of units.
+        order: the byte order, ``<`` or ``>``.
 
     Returns:
         The string, and the offset of its end.
@@ -170,7 +179,7 @@ def read_wide_text(data: bytes, at: int, count: int, order: str) -> tuple[str, i
 
 
 def write_wide_text(text: str) -> bytes:
-    """Encode a wide string: the number of its UTF-16 units, and each unit in four bytes."""
+    """Encode a wide string: the number of UTF-16 units, then each unit in four bytes."""
     units = array("I", array("H", text.encode("utf-16-le")))
     return _LENGTH.pack(len(units)) + units.tobytes()
 
@@ -181,7 +190,7 @@ def truncated() -> None:
 
 
 def unterminated() -> None:
-    """Raise the error for a string without NUL at its end."""
+    """Raise the error for a string that does not end with NUL."""
     raise DataFaultError(phrase("the end of a string does not match its length"))
 
 
@@ -191,7 +200,7 @@ def bad_bool(value: int) -> None:
 
 
 def too_long(name: str, bound: int) -> None:
-    """Raise the error for more values than a bound allows."""
+    """Raise the error for a field with more values or characters than its bound allows."""
     raise DataFaultError(phrase("'{name}' is longer than its bound of {bound}", name=name, bound=bound))
 
 

@@ -1,7 +1,7 @@
-"""Compile, for a structure, the function that writes it as CDR.
+"""Compiles the functions that serialize structures to CDR.
 
-The function packs runs of fixed fields, including those of nested structures, with one `struct` call each, takes
-encoded strings from a cache, uses arrays without copying them, and joins all parts at the end: nothing is copied twice.
+Such a function packs runs of fixed fields, including those of nested structures, with one `struct` call each, takes
+encoded strings from a cache, uses arrays without copying them, and joins all parts at the end. Nothing is copied twice.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ _parts: dict[str, Callable[..., int]] = {}
 
 
 def compile_writer(structure: Structure) -> Callable[[Any], bytes]:
-    """Compile the function that serializes a message of a structure."""
+    """Compile the function that serializes a message, including the header, to bytes."""
     code = _WriterCode(START)
     code.pack("I", str(_HEADER), place=START)
     code.structure(structure, "m", 0)
@@ -61,7 +61,10 @@ def compile_writer(structure: Structure) -> Callable[[Any], bytes]:
 
 
 def _compile_part(structure: Structure) -> Callable[..., int]:
-    """Compile the function that appends the bytes of a nested structure to a list of parts and returns their end."""
+    """Compile the function that serializes a nested structure.
+
+    The function appends the bytes to a list of parts and returns the position of their end.
+    """
     found = _parts.get(structure.type_name)
     if found is None:
         code = _WriterCode(ANYWHERE)
@@ -75,7 +78,7 @@ def _compile_part(structure: Structure) -> Callable[..., int]:
 
 
 class _WriterCode:
-    """The code of a writer while it is generated."""
+    """Generates the code of a writer."""
 
     def __init__(self, place: Place) -> None:
         self.place = place
@@ -118,8 +121,8 @@ class _WriterCode:
 
         Args:
             structure: the structure to write.
-            source: the expression for it.
-            following: the alignment of the data after it; 0 if it is not known.
+            source: the expression for the structure.
+            following: the alignment of the data after the structure; 0 if it is not known.
         """
         fields = structure.wire_fields
         for number, field in enumerate(fields):
@@ -197,7 +200,7 @@ class _WriterCode:
         self.pack("I", length)
         self._end_run()
         if primitive.size == 8:
-            # There is no padding after the length of an empty sequence.
+            # No padding follows the length of an empty sequence.
             if self.place.padding(8) is None:
                 self.sync()
                 self.needs_position = True
@@ -230,7 +233,10 @@ class _WriterCode:
         self._piece(self._named(piece), ANYWHERE)
 
     def _repeated(self, values: str, write: Callable[[str], None]) -> None:
-        """Generate a loop, whose start has the alignment that holds for the first and all further iterations."""
+        """Generate a loop over values.
+
+        At the start of the loop, the code relies only on an alignment that holds in every iteration.
+        """
         self.flush()
         self.sync()
         before = self.place
@@ -252,7 +258,7 @@ class _WriterCode:
     # --- pieces ---------------------------------------------------------------------------------------------
 
     def align(self, size: int) -> None:
-        """Generate the padding up to a multiple of a size."""
+        """Generate the padding up to a multiple of `size`."""
         padding = self.place.padding(size)
         if padding is None:
             self._end_run()
@@ -267,7 +273,10 @@ class _WriterCode:
             self._advance(padding)
 
     def pack(self, code: str, value: str, place: Place | None = None) -> None:
-        """Generate the packing of a primitive at an aligned position; with `place`, the position does not advance."""
+        """Generate the packing of a primitive at an aligned position.
+
+        If `place` is given, the position does not advance.
+        """
         self._run.append((code, value))
         if place is None:
             self._advance(struct.calcsize("<" + code))
@@ -281,7 +290,7 @@ class _WriterCode:
             self._pieces = []
 
     def sync(self) -> None:
-        """Generate the code that sets the variable `p` to the position."""
+        """Generate the code that sets the variable `p` to the current position."""
         if self._unsynced:
             numbers = sum(int(term) for term in self._unsynced if term.isdigit())
             terms = [term for term in self._unsynced if not term.isdigit()]

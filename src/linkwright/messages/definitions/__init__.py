@@ -1,1 +1,1 @@
-"""The definitions of interfaces: find them, parse them, and compute their hashes."""
+"""The definitions of interfaces: how they are found and parsed, and their hashes."""

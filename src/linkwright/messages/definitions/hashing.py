@@ -1,8 +1,8 @@
-"""The hash of a type that ROS 2 (Iron and newer) sends with endpoints: RIHS01, the SHA-256 of a type description.
+"""The type hashes that ROS 2 (Iron and newer) announces with endpoints: RIHS01.
 
-The description is that of type_description_interfaces (REP 2011, REP 2016): the names and types of the fields, without
-defaults and constants, and the same for all nested structures. rosidl hashes it as JSON, with exactly the separators
-and the order of keys used here.
+Such a hash is the SHA-256 of a type description, as in type_description_interfaces (REP 2011, REP 2016): the names and
+types of the fields, without defaults and constants, and the same for all nested structures. rosidl hashes the
+description as JSON, with exactly the separators and the order of keys used here.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ def hash_of(description: dict[str, Any]) -> str:
 def type_description(definition: Definition) -> dict[str, Any]:
     """Return the description of a type and of all nested types.
 
-    It has the form of a type_description_interfaces/msg/TypeDescription without default values.
+    The description has the form of a type_description_interfaces/msg/TypeDescription without default values.
     """
     described = _individual(definition)
     seen: dict[str, dict[str, Any]] = {}
@@ -84,7 +84,7 @@ def _individual(definition: Definition) -> dict[str, Any]:
 
 
 def _members(definition: Definition) -> tuple[Field, ...]:
-    """Return the fields of a structure; services and actions are described as if they had fields too."""
+    """Return the fields of a definition; services and actions are described as if they had some."""
     if isinstance(definition, Structure):
         return definition.wire_fields
     if isinstance(definition, Service):

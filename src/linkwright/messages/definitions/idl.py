@@ -1,6 +1,6 @@
-"""Parse ``.idl`` files, as far as ROS interfaces use the language.
+"""Parses ``.idl`` files, limited to the part of the language that ROS interfaces use.
 
-Supported is everything that rosidl generates from ``.msg``, ``.srv`` and ``.action`` files: modules, structures of
+This is everything that rosidl generates from ``.msg``, ``.srv`` and ``.action`` files: modules, structures of
 primitives, strings, sequences and arrays, typedefs of these, constants, and ``@default``. Other annotations are
 skipped. Unions, enumerations and other constructs of IDL that such files do not have are refused with their location.
 """
@@ -60,12 +60,12 @@ def parse_idl(source: SourceText, type_name: str, known: KnownMessages) -> Defin
     """Parse an ``.idl`` file.
 
     Args:
-        source: the text of the file.
+        source: the content of the file.
         type_name: the name of the interface, such as ``my_msgs/msg/Count``.
-        known: answers which messages exist.
+        known: knows which messages exist.
 
     Raises:
-        DefinitionError: MSG120 for text that is not understood, MSG111, MSG114, MSG118 and MSG119 as for other files.
+        DefinitionError: MSG120 for text that cannot be parsed; MSG111, MSG114, MSG118 and MSG119 as for other files.
     """
     reader = _Reader(source, known)
     reader.definitions(())
@@ -185,7 +185,7 @@ class _Reader:
         self.constants.setdefault(owner, []).append(constant)
 
     def _annotations(self) -> _Token | None:
-        """Skip annotations; return the value of ``@default (value=...)`` if it is among them."""
+        """Skip annotations; return the value of ``@default (value=...)``, or None if it is absent."""
         default = None
         while self._now.text == "@":
             self._expect("@")
@@ -208,7 +208,7 @@ class _Reader:
             return None
         text = _plain(token)
         if kind.container is not Container.ONE:
-            # rosidl writes a list as a string: "(1, 2, 3)".
+            # rosidl writes the default of a list as a string: "(1, 2, 3)".
             inside = text[1:-1] if text[:1] in {'"', "'"} else text
             text = "[" + inside.strip().removeprefix("(").removesuffix(")") + "]"
         try:
@@ -261,7 +261,7 @@ class _Reader:
         return FieldType(one.base, one.string_bound, Container.SEQUENCE, size)
 
     def _declared(self, kind: FieldType) -> tuple[str, FieldType]:
-        """Parse a declared name; return it and its type, including an array size after the name."""
+        """Parse a declarator; return the name and its type, including an array size after the name."""
         token = self._expect_kind("name")
         if self._now.text != "[":
             return token.text, kind
@@ -334,7 +334,7 @@ class _Reader:
 
 
 def _plain(token: _Token) -> str:
-    """Return a literal in the form of ``.msg`` files."""
+    """Return a literal token in the form of ``.msg`` files."""
     if token.kind == "text":
         return token.text.removeprefix("L")
     if token.kind == "number" and not token.text.lower().startswith(("0x", "-0x")):

@@ -1,4 +1,7 @@
-"""Interfaces as data: names, primitive types, fields, constants, and the definitions that rosidl adds to them."""
+"""Interfaces as data: names, primitive types, fields, constants, and derived definitions.
+
+rosidl derives further definitions from services and actions, such as the event of a service.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +13,10 @@ KINDS = ("msg", "srv", "action")
 
 
 class InterfaceName(NamedTuple):
-    """The parts of an interface's name; `kind` is None if the text omits it (``sensor_msgs/JointState``)."""
+    """The parts of an interface's name.
+
+    `kind` is None if the text omits it (``sensor_msgs/JointState``).
+    """
 
     package: str
     kind: str | None
@@ -34,32 +40,32 @@ def split_name(text: str) -> InterfaceName | None:
 
 
 def is_package_name(text: str) -> bool:
-    """Return whether an interface package may have this name (lower case, digits, single underscores)."""
+    """Return whether a package name is valid (lower case, digits, single underscores)."""
     return _is_words(text) and text == text.lower()
 
 
 def is_interface_name(text: str) -> bool:
-    """Return whether an interface may have this name (CamelCase), or rosidl creates it, such as ``SetBool_Request``."""
+    """Return whether an interface name is valid (CamelCase), or derived: ``SetBool_Request``."""
     return text.isascii() and all(part.isalnum() and part[0].isupper() for part in text.split("_"))
 
 
 def is_field_name(text: str) -> bool:
-    """Return whether a field may have this name (lower case, digits, single underscores)."""
+    """Return whether a field name is valid (lower case, digits, single underscores)."""
     return is_package_name(text)
 
 
 def is_constant_name(text: str) -> bool:
-    """Return whether a constant may have this name (upper case, digits, single underscores)."""
+    """Return whether a constant name is valid (upper case, digits, single underscores)."""
     return _is_words(text) and text == text.upper()
 
 
 def _is_words(text: str) -> bool:
-    # No regular expressions: compiling them takes longer than checking all names of a process.
+    # Not a regular expression, because compiling it takes longer than checking all names of a process.
     return text.isascii() and text[:1].isalpha() and all(word.isalnum() for word in text.split("_"))
 
 
 def snake_case(name: str) -> str:
-    """Return the module name of an interface (rosidl).
+    """Return the snake_case form of an interface's name, as rosidl uses it for modules.
 
     ``JointState`` gives ``joint_state``, and ``TFMessage`` gives ``tf_message``.
     """
@@ -74,9 +80,9 @@ def snake_case(name: str) -> str:
 
 
 def python_module(type_name: str) -> str:
-    """Return the module in which rosidl_generator_py puts a class.
+    """Return the name of the module in which rosidl_generator_py puts a class.
 
-    It is ``std_srvs.srv._set_bool`` for all of the classes of SetBool.
+    For example, all classes of SetBool are in ``std_srvs.srv._set_bool``.
     """
     package, kind, name = type_name.split("/")
     return f"{package}.{kind}._{snake_case(name.split('_')[0])}"
@@ -86,11 +92,11 @@ class Primitive(NamedTuple):
     """A primitive type.
 
     Attributes:
-        idl_name: its name in rosidl, as `get_fields_and_field_types` shows.
-        python: the type that a value must have.
+        idl_name: the name in rosidl, as shown by `get_fields_and_field_types`.
+        python: the Python type of a value.
         code: the `struct` code for one value; None for strings.
         size: the number of bytes on the wire, which is also the alignment; for strings, the size of the length.
-        type_id: its id in the type descriptions of REP 2016, whose hash is sent with endpoints.
+        type_id: the id in the type descriptions of REP 2016, whose hash is sent with endpoints.
         array_code: the `array.array` code; None if rclpy stores several values in a list.
         low: the minimum of an integer type.
         high: the maximum of an integer type; the largest finite value of a floating-point type.
@@ -112,7 +118,7 @@ class Primitive(NamedTuple):
 
     @property
     def dtype(self) -> str:
-        """The name of numpy's type, for types with an array code."""
+        """The name of the numpy type, for types with an array code."""
         return {"float": "float32", "double": "float64"}.get(self.idl_name, self.idl_name)
 
 
@@ -124,7 +130,7 @@ def _integer(name: str, code: str, bits: int, type_id: int, *, signed: bool) -> 
 PRIMITIVES: dict[str, Primitive] = {
     "int8": _integer("int8", "b", 8, 2, signed=True),
     "uint8": _integer("uint8", "B", 8, 3, signed=False),
-    # In .msg files, char has been an unsigned byte since ROS 1, and rosidl maps it to one.
+    # In .msg files, char has been an unsigned byte since ROS 1, and rosidl maps it to uint8.
     "char": _integer("uint8", "B", 8, 3, signed=False),
     "int16": _integer("int16", "h", 16, 4, signed=True),
     "uint16": _integer("uint16", "H", 16, 5, signed=False),
@@ -146,7 +152,7 @@ EMPTY_MEMBER = "structure_needs_at_least_one_member"
 
 
 class Container(Enum):
-    """The kinds of containers in fields."""
+    """Whether a field has one value, an array or a sequence."""
 
     ONE = "one"
     ARRAY = "array"
@@ -159,7 +165,7 @@ class FieldType(NamedTuple):
     Attributes:
         base: the type of one value: a primitive's name as in ``.msg`` files, or the type name of another structure.
         string_bound: the maximum number of characters of a string; None if there is no bound.
-        container: one value, an array of fixed length, or a sequence.
+        container: whether the field has one value, an array of fixed length, or a sequence.
         size: the length of an array, or the maximum number of values of a bounded sequence; otherwise None.
     """
 
@@ -170,7 +176,7 @@ class FieldType(NamedTuple):
 
     @property
     def primitive(self) -> Primitive | None:
-        """The primitive type; None for another structure."""
+        """The primitive type; None if the base is another structure."""
         return PRIMITIVES.get(self.base)
 
     @property
@@ -180,7 +186,10 @@ class FieldType(NamedTuple):
         return self.container is not Container.ONE and primitive is not None and primitive.array_code is not None
 
     def to_msg_text(self, package: str | None = None) -> str:
-        """Return the type as in a ``.msg`` file of `package`, such as ``geometry_msgs/Point[<=3]``."""
+        """Return the type as written in a ``.msg`` file of `package`.
+
+        An example is ``geometry_msgs/Point[<=3]``. Types of `package` itself are written without it.
+        """
         text = self.base
         if "/" in text:
             owner, _, name = text.split("/")
@@ -194,7 +203,10 @@ class FieldType(NamedTuple):
         return text
 
     def to_idl_text(self) -> str:
-        """Return the type as in ``get_fields_and_field_types``: ``sequence<double, 3>``, ``geometry_msgs/Point[3]``."""
+        """Return the type as shown by ``get_fields_and_field_types``.
+
+        Examples are ``sequence<double, 3>`` and ``geometry_msgs/Point[3]``.
+        """
         primitive = self.primitive
         if primitive is not None:
             text = primitive.idl_name
@@ -214,9 +226,9 @@ class Field(NamedTuple):
     """A field of a structure.
 
     Attributes:
-        name: its name, as Python users write it.
-        type: its type.
-        default: its default as in the file (a tuple for arrays and sequences); None if the file gives none.
+        name: the field's name in Python.
+        type: the field's type.
+        default: the default as in the file (a tuple for arrays and sequences); None if the file gives none.
     """
 
     name: str
@@ -233,7 +245,7 @@ class Constant(NamedTuple):
 
 
 class Structure(NamedTuple):
-    """The content of a message, or of a part of a service or action, such as a request or a goal.
+    """The content of a message, or of a part of a service or action, such as a request.
 
     Attributes:
         type_name: the type, such as ``geometry_msgs/msg/Point`` or ``std_srvs/srv/SetBool_Request``.
@@ -247,12 +259,12 @@ class Structure(NamedTuple):
 
     @property
     def wire_fields(self) -> tuple[Field, ...]:
-        """The fields on the wire: those of the structure, or rosidl's filler field if there are none."""
+        """The fields on the wire; rosidl's filler field if the structure has no fields."""
         return self.fields or (Field(EMPTY_MEMBER, FieldType("uint8")),)
 
     @property
     def references(self) -> Iterator[str]:
-        """The type names of the structures that fields use, repeated for each use."""
+        """The type names of the structures that the fields use, repeated for each use."""
         return (field.type.base for field in self.fields if "/" in field.type.base)
 
 
@@ -277,7 +289,10 @@ Definition = Structure | Service | Action
 
 
 def interface_of(type_name: str, structures: Sequence[Structure]) -> Definition:
-    """Return the message, service or action that consists of structures, given in the order of the file."""
+    """Return the message, service or action that consists of the given structures.
+
+    The structures must be in the order of the file.
+    """
     kind = type_name.split("/")[1]
     if kind == "msg":
         return structures[0]
@@ -324,7 +339,7 @@ def send_goal_of(action: Action) -> Service:
 
 
 def get_result_of(action: Action) -> Service:
-    """Return the service through which an action server returns a goal's status and result after its end."""
+    """Return the service through which an action server returns a goal's status and result."""
     name = action.type_name + "_GetResult"
     return Service(
         name,
@@ -337,14 +352,14 @@ def get_result_of(action: Action) -> Service:
 
 
 def feedback_message_of(action: Action) -> Structure:
-    """Return the message of an action's feedback topic: the feedback, and the id of its goal."""
+    """Return the message of an action's feedback topic: the feedback and the goal's id."""
     return Structure(
         action.type_name + "_FeedbackMessage", (_GOAL_ID, Field("feedback", FieldType(action.feedback.type_name)))
     )
 
 
 def parts_of(definition: Definition) -> dict[str, Definition]:
-    """Return all definitions that rosidl derives from an interface, including itself: type name -> definition."""
+    """Return an interface and all definitions that rosidl derives from it, by type name."""
     parts: dict[str, Definition] = {definition.type_name: definition}
     if isinstance(definition, Service):
         for structure in (definition.request, definition.response, event_of(definition)):

@@ -1,6 +1,6 @@
-"""Find the definition of an interface by its name.
+"""Finds the definition of an interface by its name.
 
-Interfaces that come with Linkwright take precedence, then those of the workspace, then those that data contained.
+Interfaces that come with Linkwright take precedence, then those of the workspace, then those contained in data.
 """
 
 from __future__ import annotations
@@ -51,11 +51,11 @@ KIND_NAMES = {"msg": "message", "srv": "service", "action": "action"}
 
 
 class Library:
-    """All known interfaces, read on demand; may be used from several threads.
+    """All known interfaces, read on demand. Any thread may use the library.
 
-    Interfaces that come with Linkwright take precedence over interfaces of the workspace with the same name. Others are
-    read, without a build, from the interface files of the packages that the current finder finds. An interface that is
-    in neither place may be known from a definition that data contained.
+    Interfaces that come with Linkwright take precedence over interfaces of the workspace with the same name. Interfaces
+    of the workspace are read, without a build, from the interface files of the packages that the current finder
+    finds. For names in neither of these, definitions that were contained in data are used.
     """
 
     def __init__(self) -> None:
@@ -75,7 +75,7 @@ class Library:
 
         Args:
             name: ``package/kind/Name``, or ``package/Name``.
-            kinds: the accepted kinds of ``msg``, ``srv`` and ``action``; any kind if omitted.
+            kinds: the accepted kinds, of ``msg``, ``srv`` and ``action``; any kind if omitted.
 
         Raises:
             InterfaceNotFoundError: MSG101 with the nearest names, MSG102 for a text that is not a name.
@@ -88,13 +88,15 @@ class Library:
             return self._look_up(name, kinds or KINDS)
 
     def structure(self, type_name: str) -> Structure:
-        """Return the definition of a structure by its full type name."""
+        """Return the definition of the structure with a full type name."""
         found = self.definition(type_name)
         assert isinstance(found, Structure)
         return found
 
     def source(self, name: str) -> SourceText:
-        """Return the interface file of a definition; the files that come with Linkwright have our own comments.
+        """Return the interface file of a definition, with its name.
+
+        The comments in files that come with Linkwright are our own.
 
         Raises:
             InterfaceNotFoundError: as in `definition`.
@@ -104,21 +106,21 @@ class Library:
         return self._sources[f"{package}/{kind}/{part.partition('_')[0]}"]
 
     def add_text(self, type_name: str, source: SourceText) -> None:
-        """Register the text of a message definition contained in data; the first text for a name is kept.
+        """Register a message definition contained in data. The first text for a name is kept.
 
         Args:
             type_name: the type of the message.
-            source: its text; the suffix ``.idl`` in its name marks it as IDL.
+            source: the text; the suffix ``.idl`` in its name marks it as IDL.
         """
         with self._lock:
             self._carried.setdefault(type_name, source)
 
     def names(self, kind: str, package: str | None = None) -> list[str]:
-        """Return the type names of all interfaces of one kind, including those of the workspace, sorted.
+        """Return the sorted type names of all interfaces of one kind, including the workspace's.
 
         Args:
             kind: ``msg``, ``srv`` or ``action``.
-            package: the package; None for all.
+            package: the package; None for all packages.
         """
         found = {
             f"{owner}/{name}"
@@ -148,7 +150,10 @@ class Library:
         raise InterfaceNotFoundError(self._unknown(name, kinds))
 
     def _load(self, full: str) -> Definition | None:
-        """Read the file of an interface, and register all definitions that rosidl derives from it."""
+        """Read the file of an interface, and register all definitions that rosidl derives from it.
+
+        Returns the definition; None if there is no file.
+        """
         package, kind, name = full.split("/")
         base = f"{package}/{kind}/{name.partition('_')[0]}"
         if base in self._sources:
@@ -183,7 +188,7 @@ class Library:
         return None if path is None else _read(path)
 
     def has_message(self, type_name: str) -> bool:
-        """Return whether there is a message with this full name, whether or not its file is valid."""
+        """Return whether a message with a full name exists, even if its file has mistakes."""
         package, _, rest = type_name.partition("/")
         if rest in catalogue.texts(package) or type_name in self._carried:
             return True
@@ -191,12 +196,12 @@ class Library:
         return share is not None and interface_file(share, *rest.split("/")) is not None
 
     def hint_for(self, type_name: str) -> Phrase | None:
-        """Return a hint with names similar to that of a missing message, or None."""
+        """Return a hint with names similar to that of a missing message; None if there are none."""
         name = split_name(type_name)
         return None if name is None else self._unknown(name, ("msg",)).hint
 
     def _check(self, definition: Definition, source: SourceText, above: tuple[str, ...]) -> None:
-        """Check that no structure contains itself, and that the files of all nested ones are valid."""
+        """Check that no structure contains itself and that the files of nested structures are valid."""
         if definition.type_name in self._checked:
             return
         for structure in structures_of(definition):
@@ -213,9 +218,9 @@ class Library:
     # --- the workspace --------------------------------------------------------------------------------------
 
     def _finder(self) -> PackageFinder:
-        """Return the current finder.
+        """Return the current package finder.
 
-        Without one, a finder that is cached for a while, because it has read the workspace.
+        If there is none, a finder of our own is used, and cached for a while because it has read the workspace.
         """
         finder = active_finder()
         if finder is None:
@@ -275,7 +280,10 @@ class Library:
 
 
 class _Trusted:
-    """Replaces the checks for files that come with Linkwright, which a test checks instead."""
+    """Replaces the queries of `KnownMessages` for files that come with Linkwright.
+
+    A test has checked these files.
+    """
 
     def has_message(self, type_name: str) -> bool:
         """Return True for any name."""
@@ -287,7 +295,7 @@ class _Trusted:
 
 
 def _parse_source(source: SourceText, base: str, known: KnownMessages) -> Definition:
-    """Parse an interface file in either of the two languages."""
+    """Parse an interface file in the language that its suffix indicates."""
     if source.name.endswith(".idl"):
         from linkwright.messages.definitions.idl import parse_idl
 
@@ -296,7 +304,7 @@ def _parse_source(source: SourceText, base: str, known: KnownMessages) -> Defini
 
 
 def wrong_kind_diagnostic(definition: Definition, kind: str) -> Diagnostic:
-    """Return a diagnostic for an interface that is not of the requested kind (message, service, action)."""
+    """Return a finding for an interface of another kind than the requested one."""
     name = definition.type_name
     is_a = {Structure: phrase("a message"), Service: phrase("a service"), Action: phrase("an action")}[type(definition)]
     return Diagnostic(

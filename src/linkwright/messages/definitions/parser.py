@@ -1,4 +1,4 @@
-"""Parse interface files, with their constants and default values."""
+"""Parses interface files, with their constants and default values."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "0": "\0", "\\": "\\", '"': '"', "'
 
 
 class LiteralFault(Exception):  # noqa: N818 - not an error of the program; the parser turns it into a diagnostic
-    """Raised when a text is not a value of a type; the argument is the reason."""
+    """Raised when a text is not a value of a type. The argument is the reason."""
 
 
 def read_default(text: str, kind: FieldType) -> object:
@@ -89,7 +89,7 @@ def split_list(text: str) -> list[str]:
     at = 0
     while at < len(text):
         match = _ITEM.match(text, at)
-        if match is None:  # an unclosed quote: the rest is one item
+        if match is None:  # An unclosed quote: the rest is one item.
             items.append(text[at:].strip())
             break
         items.append(match.group(1))
@@ -202,22 +202,22 @@ class _Section:
 
 
 class KnownMessages(Protocol):
-    """The interface for asking which messages exist."""
+    """An object that knows which messages exist."""
 
     def has_message(self, type_name: str) -> bool:
-        """Return whether there is a message with this full name."""
+        """Return whether a message with a full name exists."""
 
     def hint_for(self, type_name: str) -> Phrase | None:
-        """Return a hint with names similar to that of a missing message, or None."""
+        """Return a hint with names similar to that of a missing message; None if there are none."""
 
 
 def parse_interface(source: SourceText, type_name: str, known: KnownMessages) -> Definition:
     """Parse an interface file.
 
     Args:
-        source: the text of the file.
+        source: the content of the file.
         type_name: the name of the interface, such as ``my_msgs/srv/Count``.
-        known: answers which messages exist.
+        known: knows which messages exist.
 
     Raises:
         DefinitionError: with every mistake in the file, MSG110 to MSG119.
@@ -462,7 +462,7 @@ class _Reader:
 
 
 def _without_comment(line: str) -> str:
-    """Return a line up to its comment; a ``#`` inside quotes does not begin a comment."""
+    """Return a line without its comment. A ``#`` inside quotes does not begin a comment."""
     if "#" not in line:
         return line
     quote = None
@@ -475,5 +475,6 @@ def _without_comment(line: str) -> str:
         elif character == "#":
             return line[:at]
     # An apostrophe that is never closed ("string name  # the robot's") was in the comment, so the first ``#`` begins
-    # it.
+    # the
+    # comment.
     return line.partition("#")[0] if quote else line

@@ -1,4 +1,4 @@
-"""Types of fields as in rosidl_parser, for the attribute ``SLOT_TYPES``, which code written for rclpy reads."""
+"""Field types as in rosidl_parser, for the attribute ``SLOT_TYPES``, which programs read."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from linkwright.messages.definitions.interfaces import Container, FieldType, Str
 
 
 class AbstractType:
-    """Any type; types with the same content are equal."""
+    """The base class of all types. Types with the same content are equal."""
 
     __slots__ = ()
 
@@ -42,7 +42,7 @@ class BasicType(AbstractNestableType):
 
 
 class NamedType(AbstractNestableType):
-    """A type referred to by a name without namespaces."""
+    """A type given by its name without namespaces."""
 
     __slots__ = ("name",)
 
@@ -68,7 +68,7 @@ class NamespacedType(AbstractNestableType):
 
 
 class AbstractGenericString(AbstractNestableType):
-    """Any string type."""
+    """The base class of the string types."""
 
     __slots__ = ()
 
@@ -128,7 +128,7 @@ class UnboundedWString(AbstractWString):
 
 
 class AbstractNestedType(AbstractType):
-    """An array or sequence: several values of one type."""
+    """The base class of arrays and sequences, which have several values of one type."""
 
     __slots__ = ("value_type",)
 
@@ -181,7 +181,7 @@ class UnboundedSequence(AbstractSequence):
 
 
 def slot_types(structure: Structure) -> tuple[AbstractType, ...]:
-    """Return the types of a structure's fields, in their order."""
+    """Return the types of a structure's fields, in the order of the fields."""
     return tuple(slot_type(field.type) for field in structure.fields)
 
 

@@ -21,7 +21,7 @@ IsFree = Callable[[NDArray[np.float64]], bool]
 
 
 class Outcome(Enum):
-    """The state of a behaviour."""
+    """The state of a behaviour after a cycle."""
 
     RUNNING = "running"
     DONE = "done"
@@ -34,9 +34,9 @@ class Step:
     """The result of one cycle of a behaviour.
 
     Attributes:
-        outcome: whether the behaviour continues.
+        outcome: whether the behaviour is still running, or how it ended.
         velocity: the commanded velocity; zero once the behaviour has ended.
-        traveled: the distance travelled so far, in metres or radians.
+        traveled: the distance travelled or the angle turned so far, in metres or radians.
     """
 
     outcome: Outcome
@@ -45,7 +45,7 @@ class Step:
 
 
 class Behavior(ABC):
-    """A running behaviour.
+    """The base class of behaviours.
 
     Args:
         allowance: the time limit in seconds; 0 for no limit.
@@ -60,7 +60,7 @@ class Behavior(ABC):
         Args:
             pose: the pose of the robot.
             elapsed: the time since the behaviour began, in seconds.
-            is_free: see `IsFree`; poses are in the frame of `pose`.
+            is_free: checks poses for collisions, in the frame of `pose`; see `IsFree`.
 
         Returns:
             The result of the cycle.
@@ -86,7 +86,10 @@ class SpinParameters:
 
 
 class Spin(Behavior):
-    """Turn in place by an angle in radians, which may exceed a full turn."""
+    """A behaviour that turns the robot in place, by an angle that may exceed a full turn.
+
+    The angle is in radians.
+    """
 
     def __init__(self, angle: float, allowance: float, parameters: SpinParameters, start: Pose) -> None:
         super().__init__(allowance)
@@ -114,7 +117,7 @@ class Spin(Behavior):
 
 
 class DriveStraight(Behavior):
-    """Drive straight forward or backward.
+    """A behaviour that drives the robot straight forward or backward.
 
     Args:
         distance: the distance to drive, in metres; negative to drive backward.
@@ -143,7 +146,7 @@ class DriveStraight(Behavior):
 
 
 class Wait(Behavior):
-    """Wait in place for a number of seconds."""
+    """A behaviour that keeps the robot at rest for a number of seconds."""
 
     def __init__(self, seconds: float) -> None:
         super().__init__(0.0)
@@ -154,15 +157,15 @@ class Wait(Behavior):
 
 
 def slow_near_obstacles(pose: Pose, velocity: Velocity, seconds: float, is_free: IsFree) -> Velocity:
-    """Return an operator's velocity, slowed down before obstacles (nav2's assisted teleoperation).
+    """Return an operator's velocity, reduced near obstacles (nav2's assisted teleoperation).
 
-    The sooner the velocity leads into an obstacle, the more it is reduced.
+    The sooner the velocity leads to a collision, the more it is reduced.
 
     Args:
         pose: the pose of the robot.
         velocity: the requested velocity.
-        seconds: how far ahead obstacles are checked, in seconds.
-        is_free: see `IsFree`.
+        seconds: how far ahead the motion is checked for collisions, in seconds.
+        is_free: checks poses for collisions; see `IsFree`.
     """
     ahead = _predicted_poses(pose, velocity, seconds)
     for index in range(len(ahead)):
@@ -173,7 +176,7 @@ def slow_near_obstacles(pose: Pose, velocity: Velocity, seconds: float, is_free:
 
 
 def _predicted_poses(pose: Pose, velocity: Velocity, seconds: float) -> NDArray[np.float64]:
-    """Return the poses reached with a velocity over the next seconds, of shape (poses, 3)."""
+    """Return the poses predicted at a constant velocity, of shape (poses, 3)."""
     count = max(2, round(seconds / _LOOKS) + 1)
     ahead: NDArray[np.float64] = predict_poses(pose, np.array([velocity]), np.linspace(0.0, seconds, count)[1:])[0]
     return ahead

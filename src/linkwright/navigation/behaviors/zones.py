@@ -1,6 +1,6 @@
 """Zones around a robot, as in nav2's collision_monitor.
 
-Sensor points in a zone slow down, limit or stop the robot.
+A zone slows down, limits or stops the robot while sensor points are inside the zone.
 
 Source: nav2_collision_monitor (``polygon.cpp``, ``collision_monitor_node.cpp``), Humble and Jazzy.
 """
@@ -35,16 +35,16 @@ class Action(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Circle:
-    """A circular zone.
+    """A circular zone around the origin of the robot.
 
     Attributes:
-        radius: in metres.
+        radius: the radius in metres.
     """
 
     radius: float
 
     def holds(self, points: Points) -> NDArray[np.bool_]:
-        """Return which points are inside, of shape (n,)."""
+        """Return a mask of the points inside the circle, of shape (points,)."""
         inside: NDArray[np.bool_] = (points**2).sum(axis=1) < self.radius**2
         return inside
 
@@ -54,13 +54,13 @@ class Outline:
     """A polygonal zone.
 
     Attributes:
-        corners: the corners of the polygon, in the frame of the robot.
+        corners: the corners of the polygon in the frame of the robot, in metres.
     """
 
     corners: Footprint
 
     def holds(self, points: Points) -> NDArray[np.bool_]:
-        """Return which points are inside, of shape (n,)."""
+        """Return a mask of the points inside the polygon, of shape (points,)."""
         return within_polygon(points, self.corners)
 
 
@@ -69,7 +69,7 @@ Shape = Circle | Outline
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """The action of a zone and its limits.
+    """The action of a zone and the action's parameters.
 
     Attributes:
         action: the action of the zone.
@@ -90,10 +90,7 @@ class Rule:
     simulation_time_step: float = 0.1
 
     def allowed(self, shape: Shape, points: Points, velocity: Velocity) -> Velocity | None:
-        """Return the velocity to which the zone changes a requested one.
-
-        Returns None if it does not restrict it.
-        """
+        """Return the permitted velocity, or None if the zone does not restrict the requested one."""
         if self.action is Action.APPROACH:
             seconds = self._seconds_left(shape, points, velocity)
             return None if seconds is None else _scaled(velocity, seconds / self.time_before_collision)
@@ -112,9 +109,9 @@ class Rule:
         return min(max(min(along, about), 0.0), 1.0)
 
     def _seconds_left(self, shape: Shape, points: Points, velocity: Velocity) -> float | None:
-        """Return the seconds until points enter the shape.
+        """Return the seconds until enough points are inside the shape at this velocity.
 
-        Returns None if that is beyond the look-ahead time.
+        Returns None if that does not happen within `time_before_collision`.
         """
         if not len(points):
             return None
@@ -136,7 +133,8 @@ class SpeedRange:
 
     Attributes:
         shape: the shape.
-        linear: the minimum and maximum speed along x in m/s; for a holonomic robot, of the speed in any direction.
+        linear: the minimum and maximum velocity along x, in m/s; for a holonomic robot, the minimum and maximum speed
+            in any direction.
         angular: the minimum and maximum angular velocity, in rad/s.
         direction: the range of directions in which a holonomic robot moves, counterclockwise, in rad; None for a robot
             that is not holonomic.
@@ -148,7 +146,7 @@ class SpeedRange:
     direction: tuple[float, float] | None = None
 
     def covers(self, velocity: Velocity) -> bool:
-        """Return whether the shape applies to a velocity."""
+        """Return whether a velocity is within the ranges, so that the shape applies."""
         speed = velocity.x if self.direction is None else hypot(velocity.x, velocity.y)
         if not self.linear[0] <= speed <= self.linear[1] or not self.angular[0] <= velocity.yaw <= self.angular[1]:
             return False
@@ -165,7 +163,7 @@ class Verdict:
     Attributes:
         velocity: the permitted velocity.
         action: the applied action.
-        zone: the name of the zone that applied it; empty if no zone did.
+        zone: the name of the zone whose action was applied; empty if no zone acted.
     """
 
     velocity: Velocity
@@ -174,7 +172,9 @@ class Verdict:
 
 
 def limit_by_zones(velocity: Velocity, zones: Sequence[tuple[str, Rule, Shape, Points]]) -> Verdict:
-    """Limit a velocity by all zones: the lowest limit wins, and a stop ends the search.
+    """Limit a velocity by all zones, and return the lowest velocity that a zone permits.
+
+    After a zone that stops the robot, the remaining zones are not checked.
 
     Args:
         velocity: the requested velocity.

@@ -1,1 +1,1 @@
-"""Costmaps: the cost of each cell for a robot, computed from maps and sensors in layers as in nav2."""
+"""Costmaps, computed from maps and sensor data in layers as in nav2."""

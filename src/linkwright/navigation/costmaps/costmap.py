@@ -1,4 +1,4 @@
-"""A costmap: a grid of costs, with lookups of the cost of points and footprints.
+"""A costmap: a grid of costs that can be queried for points and footprints.
 
 Source: nav2_costmap_2d (the values of costs) and its ``FootprintCollisionChecker``.
 """
@@ -31,13 +31,13 @@ class Costmap:
     """A grid of costs that is axis-aligned in its frame.
 
     Args:
-        grid: cells of type uint8, from `FREE` to `UNKNOWN`.
+        grid: the cells of type uint8, from `FREE` to `UNKNOWN`.
 
     Raises:
         ValueError: the cells have another type, or the grid is rotated.
 
     Attributes:
-        grid: the cells, changed by the owner of the costmap.
+        grid: the cells, which the owner of the costmap may change.
     """
 
     def __init__(self, grid: Grid) -> None:

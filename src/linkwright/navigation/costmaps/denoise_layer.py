@@ -30,13 +30,13 @@ class DenoiseLayer(Layer):
             self._together[[0, 0, 2, 2], [0, 2, 0, 2]] = False
 
     def changed(self, window: Window, moment: UpdateContext, grid: Grid) -> Window:
-        """Return the window changed by the layers below, padded by the size of a small group."""
+        """Return the window changed by the layers below, padded by the minimum group size."""
         return window.padded(self._least, grid)
 
     def write(self, grid: Grid, window: Window, moment: UpdateContext) -> None:
         """Free small groups of lethal cells.
 
-        Groups at the edge of the window are completed from the cells around it.
+        Cells around the window are counted too, so that a group that crosses the edge is not taken for a small one.
         """
         if self._least <= 1:
             return

@@ -1,4 +1,4 @@
-"""Footprints: the outline of a robot on the floor, in the robot's frame.
+"""Footprints, the outlines of robots on the floor in the frame of the robot.
 
 Source: nav2_costmap_2d (``footprint.hpp``).
 """
@@ -20,11 +20,14 @@ _LEAST_CORNERS = 3
 
 
 class BadFootprintError(ValueError):
-    """Raised when a text is not a valid footprint; the message gives the reason."""
+    """Raised when a footprint parameter is not valid; the message gives the reason."""
 
 
 def circle(radius: float) -> Footprint:
-    """Return the footprint of a round robot with a radius in metres: a polygon of 16 corners."""
+    """Return the footprint of a round robot: a regular polygon of 16 corners.
+
+    `radius` is in metres.
+    """
     angles = np.arange(_CORNERS_OF_A_CIRCLE) * (2.0 * pi / _CORNERS_OF_A_CIRCLE)
     corners: Footprint = radius * np.stack((np.cos(angles), np.sin(angles)), axis=-1)
     return corners
@@ -34,7 +37,7 @@ def read_footprint(text: str) -> Footprint:
     """Parse a footprint parameter, such as ``[[0.2, 0.1], [0.2, -0.1], [-0.2, 0.0]]``.
 
     Raises:
-        BadFootprintError: the text is not a list of three or more points.
+        BadFootprintError: the parameter is not a list of three or more points.
     """
     try:
         value: Any = literal_eval(text.strip())
@@ -49,13 +52,16 @@ def read_footprint(text: str) -> Footprint:
 
 
 def pad_footprint(footprint: Footprint, padding: float) -> Footprint:
-    """Return a footprint whose corners are moved outward along both axes by a padding in metres."""
+    """Return a footprint whose corners are moved away from both axes by `padding` metres."""
     larger: Footprint = footprint + padding * np.sign(footprint)
     return larger
 
 
 def radii(footprint: Footprint) -> tuple[float, float]:
-    """Return the radii of the inscribed and circumscribed circles around the robot's origin, in metres."""
+    """Return the radii of the inscribed and circumscribed circles of a footprint, in metres.
+
+    Both circles are centred at the origin of the robot.
+    """
     following = np.roll(footprint, -1, axis=0)
     along = following - footprint
     length = np.maximum((along**2).sum(axis=1), np.finfo(float).tiny)
@@ -75,7 +81,7 @@ def outline(footprint: Footprint, spacing: float) -> NDArray[np.float64]:
 
 
 def place_footprint(footprint: Footprint, x: float, y: float, yaw: float) -> Footprint:
-    """Return the corners of a footprint with the robot at a pose, in the frame of that pose."""
+    """Return the corners of a footprint at a pose, in the frame in which the pose is given."""
     cosine, sine = np.cos(yaw), np.sin(yaw)
     turned: Footprint = footprint @ np.array([[cosine, sine], [-sine, cosine]]) + (x, y)
     return turned

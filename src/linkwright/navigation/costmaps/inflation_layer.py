@@ -1,4 +1,4 @@
-"""The inflation layer: costs that decay with the distance from obstacles.
+"""The inflation layer, which writes costs that decay with the distance from obstacles.
 
 Source: nav2_costmap_2d ``InflationLayer``. A cell costs `INSCRIBED` up to the inscribed radius, then
 ``252 exp(-cost_scaling_factor (distance - inscribed radius))``, and nothing beyond the inflation radius.
@@ -20,13 +20,13 @@ from linkwright.navigation.grids.grid import Grid
 
 @dataclass(frozen=True, kw_only=True)
 class Inflation:
-    """The decay of costs with the distance from obstacles.
+    """The parameters of the decay of costs with the distance from obstacles.
 
     Attributes:
         inflation_radius: the distance up to which cells have a cost, in metres.
         cost_scaling_factor: the rate of the decay, per metre.
-        inflate_unknown: whether unknown cells get all costs; otherwise they get only costs at which the robot would
-            touch an obstacle.
+        inflate_unknown: whether any cost is written into unknown cells; otherwise only costs at which the robot would
+            touch an obstacle are.
         inflate_around_unknown: whether unknown cells are inflated like obstacles.
     """
 
@@ -61,9 +61,9 @@ class InflationLayer(Layer):
         self._inflation, self._inscribed_radius = inflation, None
 
     def changed(self, window: Window, moment: UpdateContext, grid: Grid) -> Window:
-        """Return the window changed below, padded by the inflation radius.
+        """Return the window changed by the layers below, padded by the inflation radius.
 
-        If the footprint changed, the window is the whole grid.
+        After a change of the inscribed radius or of the parameters, the window is the whole grid.
         """
         if self._inscribed_radius != moment.inscribed_radius:
             self._inscribed_radius = moment.inscribed_radius
@@ -71,7 +71,7 @@ class InflationLayer(Layer):
         return window.padded(self._reach(grid), grid)
 
     def write(self, grid: Grid, window: Window, moment: UpdateContext) -> None:
-        """Write the costs in the window that are caused by obstacles inside and around it."""
+        """Write the costs caused by obstacles inside and around the window into the window."""
         reach = self._reach(grid)
         if not reach:
             return

@@ -1,4 +1,4 @@
-"""The base classes of layers, which report where they changed and write their costs there."""
+"""Base classes of costmap layers, and the windows of cells that they update."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Costs = NDArray[np.uint8]
 
 @dataclass(frozen=True, slots=True)
 class Window:
-    """A rectangle of cells: rows `top` to `bottom` and columns `left` to `right`, excluding the last ones."""
+    """A rectangle of cells: rows `top` to `bottom`, columns `left` to `right`, ends excluded."""
 
     top: int = 0
     left: int = 0
@@ -33,9 +33,9 @@ class Window:
 
     @classmethod
     def around(cls, indices: NDArray[np.int64], grid: Grid) -> Window:
-        """Return the window around cells, clipped to the grid.
+        """Return the smallest window that contains some cells, clipped to the grid.
 
-        `indices` are rows and columns, of shape (n, 2).
+        `indices` are the rows and columns of the cells, of shape (n, 2); without cells, the window is empty.
         """
         if not len(indices):
             return cls()
@@ -53,7 +53,7 @@ class Window:
         return slice(self.top, self.bottom), slice(self.left, self.right)
 
     def within(self, grid: Grid) -> Window:
-        """Return the part of the window within a grid."""
+        """Return the part of the window that is within a grid; empty if there is none."""
         inside = Window(max(0, self.top), max(0, self.left), min(grid.rows, self.bottom), min(grid.columns, self.right))
         return Window() if inside.is_empty else inside
 
@@ -68,7 +68,7 @@ class Window:
         return larger.within(grid)
 
     def joined(self, other: Window) -> Window:
-        """Return the smallest window that contains both."""
+        """Return the smallest window that contains this window and another."""
         if self.is_empty or other.is_empty:
             return other if self.is_empty else self
         return Window(
@@ -109,22 +109,22 @@ class Layer(ABC):
     is_clearable: bool = False
 
     def match(self, grid: Grid, default: int) -> None:  # noqa: B027  # most keep nothing
-        """Adopt a new size or origin of the costmap.
+        """Adapt to a new size or origin of the costmap.
 
-        `default` is the cost of its cells before any layer.
+        `default` is the cost of the costmap's cells before any layer writes to them.
         """
 
     @abstractmethod
     def changed(self, window: Window, moment: UpdateContext, grid: Grid) -> Window:
-        """Process new data, and return the window whose costs change.
+        """Process new data, and return the window whose costs must be rewritten.
 
         Args:
             window: the window that changed in the layers below.
-            moment: the current time and pose.
+            moment: the time of the update and the robot's pose.
             grid: the costmap.
 
         Returns:
-            The window that must be rewritten.
+            The window that must be rewritten, including the given one.
         """
 
     @abstractmethod
@@ -132,10 +132,10 @@ class Layer(ABC):
         """Write costs into the cells of the window."""
 
     def reset(self) -> None:  # noqa: B027  # most keep nothing
-        """Reset to the state before any data."""
+        """Discard all data, so that the layer is as it was when it was created."""
 
     def clear(self, window: Window, *, outside: bool) -> None:  # noqa: B027  # of those that can be cleared
-        """Clear the data in a window, or everything outside it."""
+        """Clear the layer's data in a window, or all data outside the window."""
 
     def is_current(self, time_ns: int) -> bool:
         """Return whether the layer's data are recent enough."""
@@ -146,7 +146,7 @@ class PersistentLayer(Layer):
     """A layer with its own cells, which keep their values until they are cleared.
 
     Attributes:
-        seen: costs, as large as the costmap.
+        seen: the layer's cells, on the same grid as the costmap.
     """
 
     is_clearable = True
@@ -157,19 +157,19 @@ class PersistentLayer(Layer):
         self._extra = Window()
 
     def match(self, grid: Grid, default: int) -> None:
-        """Keep the cells that are still in the costmap after it moved."""
+        """Move the layer's cells to a new grid, with the default where the old grid had no cells."""
         cells = shift_cells(self.seen.cells, self.seen, grid, default)
         self.seen = Grid(cells=cells, resolution=grid.resolution, x=grid.x, y=grid.y)
         self._default = default
         self._extra = Window.of(grid)
 
     def reset(self) -> None:
-        """Clear all cells."""
+        """Set all cells to the default cost."""
         self.seen.cells[:] = self._default
         self._extra = Window.of(self.seen)
 
     def clear(self, window: Window, *, outside: bool) -> None:
-        """Clear the cells in a window, or all cells outside it."""
+        """Set the cells in a window, or all cells outside it, to unknown."""
         kept = self.seen.cells[window.cells].copy()
         if outside:
             self.seen.cells[:] = UNKNOWN
@@ -179,13 +179,16 @@ class PersistentLayer(Layer):
         self._extra = Window.of(self.seen)
 
     def pop_extra(self) -> Window:
-        """Return the window changed since the last call by anything other than observations."""
+        """Return the window changed by resizing or clearing since the last call."""
         extra, self._extra = self._extra, Window()
         return extra
 
 
 def shift_cells(cells: NDArray[Any], old: Grid, new: Grid, fill: int) -> NDArray[Any]:
-    """Return the cells of a grid moved to another grid; cells outside the old grid are `fill`."""
+    """Return the cells of an old grid on a new grid; cells outside the old grid are `fill`.
+
+    If the resolutions differ, all cells are `fill`.
+    """
     moved = np.full((new.rows, new.columns), fill, cells.dtype)
     if old.resolution != new.resolution:
         return moved
@@ -198,12 +201,12 @@ def shift_cells(cells: NDArray[Any], old: Grid, new: Grid, fill: int) -> NDArray
 
 
 def footprint_window(moment: UpdateContext, grid: Grid) -> Window:
-    """Return the window around the robot's footprint."""
+    """Return the smallest window that contains the robot's footprint."""
     return Window.around(grid.cells_of(moment.footprint), grid)
 
 
 def free_footprint(cells: Costs, moment: UpdateContext, grid: Grid, window: Window) -> None:
-    """Free the cells below the robot's footprint."""
+    """Free the cells of a window whose centres are within the robot's footprint."""
     inside = footprint_window(moment, grid)
     inside = Window(
         max(inside.top, window.top),

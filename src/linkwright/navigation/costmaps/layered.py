@@ -1,4 +1,4 @@
-"""A costmap of several layers, which is static or moves with the robot.
+"""A costmap of several layers that is either fixed or moves with the robot.
 
 Source: nav2_costmap_2d ``LayeredCostmap``.
 """
@@ -19,20 +19,20 @@ Pose = tuple[float, float, float]
 
 
 class LayeredCostmap:
-    """A costmap computed from layers, the first at the bottom.
+    """A costmap computed from layers.
 
     Args:
-        grid: the size and origin; the cells are written by the layers.
+        grid: the size, origin and resolution; its cells are not used.
         layers: the layers from bottom to top.
-        footprint: the footprint of the robot; see `Footprint`.
+        footprint: the footprint of the robot without padding; see `Footprint`.
         rolling: whether the costmap moves to keep the robot in its middle.
         track_unknown: whether cells without data are unknown; otherwise they are free.
         footprint_padding: the padding of the footprint, in metres.
 
     Attributes:
         costmap: the costs after the last update.
-        layers: see above.
-        padding: the padding of the next footprint, in metres.
+        layers: the layers from bottom to top.
+        padding: the padding that is applied when the footprint is next set, in metres.
         changed: the window that the last update wrote.
     """
 
@@ -57,7 +57,7 @@ class LayeredCostmap:
 
     @property
     def footprint(self) -> Footprint:
-        """The robot's footprint with its padding, in the frame of the robot."""
+        """The padded footprint, in the frame of the robot; the setter takes it without padding."""
         return self._footprint
 
     @footprint.setter
@@ -66,7 +66,7 @@ class LayeredCostmap:
         self.inscribed_radius, self.circumscribed_radius = radii(self._footprint)
 
     def resize(self, grid: Grid) -> None:
-        """Set another size or origin; layers keep the cells that are in both grids."""
+        """Set another size, origin or resolution; layers keep the cells that are in both grids."""
         cells = np.full((grid.rows, grid.columns), self._default, np.uint8)
         self.costmap = Costmap(Grid(cells=cells, resolution=grid.resolution, x=grid.x, y=grid.y))
         for layer in self.layers:
@@ -74,7 +74,7 @@ class LayeredCostmap:
         self._updated = False
 
     def update(self, pose: Pose, time_ns: int) -> bool:
-        """Update the costs from the layers.
+        """Update the costs from the enabled layers.
 
         Args:
             pose: the pose of the robot.
@@ -107,18 +107,18 @@ class LayeredCostmap:
         self._updated = False
 
     def is_current(self, time_ns: int) -> bool:
-        """Return whether the costmap was updated and the data of all layers are recent enough."""
+        """Return whether the costmap was updated, with recent data in all enabled layers."""
         return self._updated and all(layer.is_current(time_ns) for layer in self.layers if layer.enabled)
 
     def clear_entirely(self) -> None:
-        """Clear all layers."""
+        """Reset all layers and all cells."""
         self.costmap.grid.cells[:] = self._default
         for layer in self.layers:
             layer.reset()
         self._updated = False
 
     def clear_around(self, pose: Pose, distance: float, *, except_it: bool = False) -> None:
-        """Clear the layers in a square, or everywhere else.
+        """Clear the clearable layers in a square, or everywhere outside the square.
 
         Args:
             pose: the centre of the square.
@@ -133,7 +133,7 @@ class LayeredCostmap:
         self._updated = False
 
     def _centre(self, x: float, y: float) -> None:
-        """Move the origin by whole cells so that a position is in the middle of the grid."""
+        """Move the grid by an integer number of cells so that a position is in its middle."""
         grid = self.costmap.grid
         columns = int((x - grid.columns * grid.resolution / 2.0 - grid.x) / grid.resolution)
         rows = int((y - grid.rows * grid.resolution / 2.0 - grid.y) / grid.resolution)

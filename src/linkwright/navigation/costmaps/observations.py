@@ -1,4 +1,4 @@
-"""Sensor observations for obstacle layers: points in the frame of the costmap, kept for some time.
+"""Sensor observations for obstacle layers, buffered as points in the frame of the costmap.
 
 Source: nav2_costmap_2d ``ObservationBuffer``.
 """
@@ -16,19 +16,19 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 @dataclass(frozen=True, kw_only=True)
 class Source:
-    """Settings of a sensor; lengths in metres, times in seconds.
+    """Settings of a sensor, with lengths in metres and times in seconds.
 
     Attributes:
         marking: whether the sensor's points mark obstacles.
         clearing: whether the space between the sensor and its points is cleared.
-        obstacle_max_range: farther points are ignored.
-        obstacle_min_range: nearer points are ignored.
-        raytrace_max_range: farther cells are not cleared.
-        raytrace_min_range: nearer cells are not cleared.
-        min_obstacle_height: lower points are dropped.
-        max_obstacle_height: higher points are dropped.
-        observation_persistence: how long points count; 0 to keep only the latest observation.
-        expected_update_rate: the longest silence before the costmap is not current; 0 for no limit.
+        obstacle_max_range: points farther away do not mark obstacles.
+        obstacle_min_range: points closer than this do not mark obstacles.
+        raytrace_max_range: cells farther away are not cleared.
+        raytrace_min_range: cells closer than this are not cleared.
+        min_obstacle_height: points below this height are dropped.
+        max_obstacle_height: points above this height are dropped.
+        observation_persistence: how long observations stay valid; 0 to keep only the latest one.
+        expected_update_rate: the longest time between observations for the costmap to be current; 0 for no limit.
     """
 
     marking: bool = True
@@ -86,7 +86,7 @@ class ObservationBuffer:
         self._updated_ns = time_ns
 
     def observations(self, time_ns: int) -> list[Observation]:
-        """Return the observations that are valid at a time."""
+        """Return the observations that are valid at a time, and drop those that have expired."""
         if self.source.observation_persistence:
             oldest = time_ns - round(self.source.observation_persistence * NANOSECONDS_PER_SECOND)
             while self._observations and self._observations[0].time_ns < oldest:
@@ -94,7 +94,7 @@ class ObservationBuffer:
         return list(self._observations)
 
     def is_current(self, time_ns: int) -> bool:
-        """Return whether the sensor published within the expected time."""
+        """Return whether the latest observation is within the expected time, or no time is set."""
         if not self.source.expected_update_rate:
             return True
         return (

@@ -1,6 +1,4 @@
-"""The obstacle layer, which marks sensor points and clears the rays to them.
-
-Cells that contain points are occupied, and cells on the rays to the points are free.
+"""The obstacle layer, which marks the cells of sensor points and clears the rays to them.
 
 Source: nav2_costmap_2d ``ObstacleLayer``.
 """
@@ -40,10 +38,10 @@ class Heights:
 
 
 class ObstacleLayer(PersistentLayer):
-    """A layer that marks the cells of points, and clears the cells on the rays to them.
+    """A layer that marks the cells of sensor points, and clears the rays to the points.
 
     Args:
-        buffers: the observations of sensors.
+        buffers: the observations, with one buffer for each sensor.
         heights: the height range of obstacles.
         combination_method: `OVERWRITE`, `MAXIMUM` or `MAXIMUM_OF_KNOWN`.
         footprint_clearing: whether to clear the cells under the robot.
@@ -65,16 +63,16 @@ class ObstacleLayer(PersistentLayer):
         self._forgotten = False
 
     def reset(self) -> None:
-        """Clear everything; the layer is not current until its next update."""
+        """Clear all cells; the layer is not current until its next update."""
         super().reset()
         self._forgotten = True
 
     def is_current(self, time_ns: int) -> bool:
-        """Return whether all sensors published within the expected time."""
+        """Return whether the layer was updated since its reset and no sensor is overdue."""
         return not self._forgotten and all(buffer.is_current(time_ns) for buffer in self.buffers)
 
     def changed(self, window: Window, moment: UpdateContext, grid: Grid) -> Window:
-        """Return the window touched by the rays and points of the new observations."""
+        """Apply the valid observations, and return the window that must be rewritten."""
         self._forgotten = False
         window = window.joined(self.pop_extra())
         seen = [
@@ -93,7 +91,7 @@ class ObstacleLayer(PersistentLayer):
         return window
 
     def write(self, grid: Grid, window: Window, moment: UpdateContext) -> None:
-        """Merge the layer's cells into the costmap."""
+        """Combine the layer's cells with the costs of the layers below."""
         if self._footprint_clearing:
             free_footprint(self.seen.cells, moment, self.seen, window)
         ours, below = self.seen.cells[window.cells], grid.cells[window.cells]
@@ -105,7 +103,7 @@ class ObstacleLayer(PersistentLayer):
         below[known] = ours[known]
 
     def clear_rays(self, observation: Observation, grid: Grid) -> Window:
-        """Free the cells on the rays to the points, and return the window that the rays touch."""
+        """Free the cells on the rays to the points, and return the window around these cells."""
         start, ends, _ = ray_ends(observation, grid)
         cells, _ = cells_on_lines(start, ends)
         cells = cells[grid.has(cells) & _far_enough(cells, start, observation, grid)]
@@ -113,14 +111,14 @@ class ObstacleLayer(PersistentLayer):
         return Window.around(cells, grid)
 
     def mark_points(self, observation: Observation, grid: Grid) -> Window:
-        """Mark the cells of points as occupied, and return the window that they touch."""
+        """Mark the cells that contain obstacle points, and return the window around these cells."""
         cells = grid.cells_of(self.obstacles(observation)[:, :2])
         cells = cells[grid.has(cells)]
         self.seen.cells[cells[:, 0], cells[:, 1]] = LETHAL
         return Window.around(cells, grid)
 
     def obstacles(self, observation: Observation) -> NDArray[np.float64]:
-        """Return the points that are obstacles, of shape (n, 3)."""
+        """Return the points within the range and height of obstacles, of shape (n, 3)."""
         points = observation.obstacles()
         height = points[:, 2]
         high: NDArray[np.float64] = points[
@@ -153,7 +151,7 @@ def ray_ends(observation: Observation, grid: Grid) -> tuple[Cells, Cells, NDArra
 
 
 def _far_enough(cells: Cells, start: Cells, observation: Observation, grid: Grid) -> NDArray[np.bool_]:
-    """Return which cells of rays are beyond the minimum distance for clearing."""
+    """Return a mask of the cells beyond the minimum range for clearing."""
     least = observation.source.raytrace_min_range / grid.resolution
     offsets = cells - start
     far: NDArray[np.bool_] = (offsets**2).sum(axis=1) >= least**2

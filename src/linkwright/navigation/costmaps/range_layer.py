@@ -1,6 +1,6 @@
-"""The range layer, for sensors with a wide cone such as sonars: probabilities that cells are occupied.
+"""The range layer, which estimates occupancy from sensors with a wide cone, such as sonars.
 
-Source: nav2_costmap_2d ``RangeSensorLayer``. Unlike nav2, only cells within the field of view change.
+Source: nav2_costmap_2d ``RangeSensorLayer``. Unlike in nav2, only cells within the field of view change.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class RangeSettings:
         clear_threshold: cells with a lower probability of being occupied are free.
         mark_threshold: cells with a higher probability of being occupied are obstacles.
         clear_on_max_reading: whether a reading of the maximum range clears the cone.
-        no_readings_timeout: the longest silence of the sensors before the costmap is not current, in seconds; 0 for no
+        no_readings_timeout: the longest time without readings for the costmap to be current, in seconds; 0 for no
             limit.
     """
 
@@ -72,7 +72,10 @@ class Reading:
 
 
 class RangeLayer(PersistentLayer):
-    """A layer of probabilities updated by readings: in `seen`, 0 is certainly free and 254 certainly occupied."""
+    """A layer of occupancy probabilities that readings update.
+
+    The cells of `seen` range from 0 (certainly free) to 254 (certainly occupied).
+    """
 
     def __init__(self, settings: RangeSettings) -> None:
         super().__init__()
@@ -81,33 +84,33 @@ class RangeLayer(PersistentLayer):
         self._heard_ns: int | None = None
 
     def add(self, reading: Reading) -> None:
-        """Add a reading."""
+        """Queue a reading for the next update."""
         self._readings.append(reading)
         self._heard_ns = reading.time_ns
 
     def match(self, grid: Grid, default: int) -> None:
-        """Keep the cells that are still in the costmap after it moved."""
+        """Move the probabilities to the new grid; cells that were outside the old grid get 127."""
         super().match(grid, _EVEN)
 
     def clear(self, window: Window, *, outside: bool) -> None:
-        """Clear the cells in a window, or all cells outside it."""
+        """Set the cells in a window, or all cells outside it, to even odds."""
         super().clear(window, outside=outside)
         self.seen.cells[self.seen.cells == UNKNOWN] = _EVEN
 
     def is_current(self, time_ns: int) -> bool:
-        """Return whether a sensor published within the expected time."""
+        """Return whether a sensor published within the timeout, or no timeout is set."""
         most = self.settings.no_readings_timeout
         return not most or (self._heard_ns is not None and (time_ns - self._heard_ns) / NANOSECONDS_PER_SECOND <= most)
 
     def changed(self, window: Window, moment: UpdateContext, grid: Grid) -> Window:
-        """Return the window that new readings touch."""
+        """Apply the queued readings, and return the window that must be rewritten."""
         window = window.joined(self.pop_extra())
         while self._readings:
             window = window.joined(self._learn(self._readings.popleft(), grid))
         return window
 
     def write(self, grid: Grid, window: Window, moment: UpdateContext) -> None:
-        """Write cells as occupied or free where their probability is beyond a threshold."""
+        """Mark cells above the upper threshold, and free unknown cells below the lower threshold."""
         likely, below = self.seen.cells[window.cells], grid.cells[window.cells]
         below[(likely < self.settings.clear_threshold * _CERTAIN) & (below == UNKNOWN)] = FREE
         below[likely > self.settings.mark_threshold * _CERTAIN] = LETHAL

@@ -1,4 +1,4 @@
-"""The static layer: costs from the occupancy grid of a map.
+"""The static layer, which writes the costs of a map's occupancy grid.
 
 Source: nav2_costmap_2d ``StaticLayer``.
 """
@@ -29,7 +29,7 @@ class Interpretation:
 
     Attributes:
         track_unknown_space: whether unknown cells stay unknown; otherwise they are free.
-        unknown_cost_value: the value that means unknown, as a byte: 255 is -1.
+        unknown_cost_value: the value that means unknown, as an unsigned byte: -1 is 255.
         lethal_threshold: the lowest value of an obstacle.
         trinary: whether all other cells are free; otherwise their cost is proportional to the value.
     """
@@ -56,10 +56,10 @@ class StaticLayer(Layer):
         interpretation: the conversion of the map's values.
         use_maximum: whether the layer may only raise costs.
         footprint_clearing: whether to clear the cells under the robot.
-        pose: the pose of the costmap's frame in the map's frame; None while it is unknown.
+        pose: returns the pose of the costmap's frame in the map's frame, or None while it is unknown.
 
     Attributes:
-        map: costs in the frame of the map; None before the first map.
+        map: the map's costs in the frame of the map; None before the first map.
     """
 
     def __init__(
@@ -79,7 +79,7 @@ class StaticLayer(Layer):
         self._news = True
 
     def set_map(self, occupancy: Grid) -> None:
-        """Set a new map, whose cells are of type int8: per cent, or -1 for unknown."""
+        """Set a new map, with cells of type int8 in per cent, or -1 for unknown."""
         costs = self.interpretation.table()[occupancy.cells.astype(np.uint8)]
         self.map = Grid(cells=costs, resolution=occupancy.resolution, x=occupancy.x, y=occupancy.y, yaw=occupancy.yaw)
         self._news = True
@@ -98,19 +98,19 @@ class StaticLayer(Layer):
         return True
 
     def match(self, grid: Grid, default: int) -> None:
-        """Make the next update write everything."""
+        """Make the next update write all cells."""
         self._news = True
 
     def reset(self) -> None:
-        """Make the next update write everything."""
+        """Make the next update write all cells; the map is kept."""
         self._news = True
 
     def is_current(self, time_ns: int) -> bool:
-        """Return whether a map exists and its transform is known."""
+        """Return whether a map exists, and its pose is known or will be queried by the next update."""
         return self.map is not None and (self._placed is not None or self._news)
 
     def changed(self, window: Window, moment: UpdateContext, grid: Grid) -> Window:
-        """Return the changed window; after a new map or transform it is the whole grid."""
+        """Return the window that must be rewritten: the whole grid after a new map or transform."""
         if self.map is None:
             return window
         pose = self._pose()
@@ -124,7 +124,7 @@ class StaticLayer(Layer):
         return Window.of(grid)
 
     def write(self, grid: Grid, window: Window, moment: UpdateContext) -> None:
-        """Write the map's cells in the window."""
+        """Write the map's costs into the window."""
         if self.map is None or self._placed is None:
             return
         part = grid.cells[window.cells]
@@ -134,7 +134,7 @@ class StaticLayer(Layer):
             free_footprint(grid.cells, moment, grid, window)
 
     def _aligned_cells(self, grid: Grid, window: Window) -> tuple[tuple[slice, slice], Costs] | None:
-        """Return the cells of a window that the map covers, and their costs.
+        """Return the index of the window's cells that the map covers, and the costs of these cells.
 
         Returns None if the grids are not aligned.
         """
@@ -156,7 +156,10 @@ class StaticLayer(Layer):
         return there, known.cells[seen.cells]
 
     def _sampled_cells(self, grid: Grid, window: Window) -> tuple[NDArray[np.bool_], Costs]:
-        """Return the same as `_aligned_cells` for grids that are not aligned, sampled at the cell centres."""
+        """Return a mask of the window's cells that the map covers, and the costs of these cells.
+
+        The map is sampled at the cell centres, for grids that are not aligned.
+        """
         assert self.map is not None
         assert self._placed is not None
         rows, columns = np.mgrid[window.top : window.bottom, window.left : window.right]

@@ -1,4 +1,4 @@
-"""The voxel layer: an obstacle layer with height levels.
+"""The voxel layer: an obstacle layer that distinguishes height levels.
 
 A ray clears only the levels that it crosses.
 
@@ -49,7 +49,7 @@ class Voxels:
 
 
 class VoxelLayer(ObstacleLayer):
-    """A layer that marks and clears voxels; see `ObstacleLayer`."""
+    """An `ObstacleLayer` that marks and clears voxels."""
 
     def __init__(
         self,
@@ -67,19 +67,19 @@ class VoxelLayer(ObstacleLayer):
         self._unknown: Levels = np.zeros((0, 0), np.uint16)
 
     def match(self, grid: Grid, default: int) -> None:
-        """Keep the cells that are still in the costmap after it moved."""
+        """Move the voxels to a new grid, with unknown ones where the old grid had no cells."""
         self._occupied = shift_cells(self._occupied, self.seen, grid, 0)
         self._unknown = shift_cells(self._unknown, self.seen, grid, _ALL)
         super().match(grid, default)
 
     def reset(self) -> None:
-        """Clear everything."""
+        """Set all voxels to unknown; the layer is not current until its next update."""
         super().reset()
         self._occupied[:] = 0
         self._unknown[:] = _ALL
 
     def clear(self, window: Window, *, outside: bool) -> None:
-        """Clear the cells in a window, or all cells outside it."""
+        """Set the voxels in a window, or all voxels outside it, to unknown."""
         gone = np.zeros(self._unknown.shape, np.bool_)
         gone[window.cells] = True
         gone ^= outside
@@ -87,7 +87,7 @@ class VoxelLayer(ObstacleLayer):
         super().clear(window, outside=outside)
 
     def clear_rays(self, observation: Observation, grid: Grid) -> Window:
-        """Free the voxels on the rays to the points, and return the window that the rays touch."""
+        """Free the voxels on the rays to the points, and return the window around their cells."""
         start, ends, heights = ray_ends(observation, grid)
         cells, ray = cells_on_lines(start, ends)
         steps = np.bincount(ray, minlength=len(ends))
@@ -104,7 +104,7 @@ class VoxelLayer(ObstacleLayer):
         return Window.around(cells, grid)
 
     def mark_points(self, observation: Observation, grid: Grid) -> Window:
-        """Mark the voxels of points as occupied, and return the window that they touch."""
+        """Mark the voxels that contain points, and return the window around their cells."""
         points = self.obstacles(observation)
         cells = grid.cells_of(points[:, :2])
         levels, counts = self._levels(points[:, 2])
@@ -116,13 +116,13 @@ class VoxelLayer(ObstacleLayer):
         return Window.around(cells, grid)
 
     def _levels(self, heights: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
-        """Return the level of each height, and which heights are within the levels."""
+        """Return the level of each height, and a mask of the heights that are within the levels."""
         levels = np.floor((heights - self._voxels.origin_z) / self._voxels.z_resolution).astype(np.int64)
         there = (levels >= 0) & (levels < self._voxels.z_voxels)
         return np.where(there, levels, 0), there
 
     def _judge(self, cells: Cells) -> None:
-        """Compute the costs of columns from the counts of their marked and unknown voxels."""
+        """Compute the costs of cells from the numbers of their occupied and unknown voxels."""
         rows, columns = cells[:, 0], cells[:, 1]
         occupied, unknown = _BITS[self._occupied[rows, columns]], _BITS[self._unknown[rows, columns]]
         known = np.where(unknown > self._unknown_threshold, UNKNOWN, FREE)

@@ -1,4 +1,4 @@
-"""Fusion of measurements of several sensors, received in any order, in one filter."""
+"""Fusion of measurements from several sensors, received in any order, in one filter."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.navigation.estimation.kalman import KalmanFilter, Measurement, S
 
 @dataclass(frozen=True, slots=True)
 class Timing:
-    """When an estimator predicts without measurements, and how far it rewinds for late ones.
+    """The settings for prediction without measurements and for late measurements.
 
     Attributes:
         sensor_timeout_ns: the time without measurements after which the state is predicted.
@@ -26,7 +26,7 @@ class Timing:
 
 
 class Estimator:
-    """Queues measurements until they are due, and passes them to a filter in the order of their stamps.
+    """A queue of measurements that are passed to a filter in the order of their stamps.
 
     Args:
         kalman: the filter.
@@ -42,18 +42,21 @@ class Estimator:
         self._states: deque[Snapshot] = deque()
 
     def add(self, measurement: Measurement) -> None:
-        """Add a measurement; the first `advance` to its time or later uses it."""
-        self._count += 1  # Measurements with equal stamps are used in the order of their arrival.
+        """Queue a measurement until `advance` is called with its time or a later one."""
+        self._count += 1  # Measurements with equal stamps are processed in the order of their arrival.
         heapq.heappush(self._queue, (measurement.time_ns, self._count, measurement))
 
     def clear(self) -> None:
-        """Drop all measurements."""
+        """Drop all queued and processed measurements and all saved states."""
         self._queue.clear()
         self._past.clear()
         self._states.clear()
 
     def advance(self, now_ns: int) -> None:
-        """Use the measurements up to now, and predict the state if there was no measurement for long."""
+        """Process the measurements up to now.
+
+        The state is then predicted up to now if `Timing` demands it, or if measurements have timed out.
+        """
         kalman, history_ns = self.filter, self._timing.history_ns
         predict = self._timing.predict_to_now
         if self._queue:
@@ -82,7 +85,10 @@ class Estimator:
                     self._states.append(kalman.snapshot())
 
     def _go_back(self, time_ns: int) -> int:
-        """Restore the last state before a time, queue the later measurements again and return their number."""
+        """Restore the last state before a time, and queue the later measurements again.
+
+        Returns the number of measurements that were queued again.
+        """
         oldest = None
         while self._states and self._states[-1].time_ns >= time_ns:
             oldest = self._states.pop()

@@ -100,7 +100,7 @@ def degrees_of_utm(easting: float, northing: float, zone: Zone) -> tuple[float, 
 def convergence(latitude: float, longitude: float, zone: Zone) -> float:
     """Return the meridian convergence, in rad, at a position in degrees.
 
-    It is the clockwise angle from true north to grid north.
+    The meridian convergence is the clockwise angle from true north to grid north.
     """
     return atan(tan(radians(longitude) - zone.meridian) * sin(radians(latitude)))
 
@@ -110,9 +110,9 @@ class TangentPlane:
     """A plane tangent to the ellipsoid, whose x, y and z axes point east, north and up.
 
     Args:
-        latitude: the latitude of its origin, in degrees.
-        longitude: the longitude of its origin, in degrees.
-        altitude: the altitude of its origin above the ellipsoid, in metres.
+        latitude: the latitude of the plane's origin, in degrees.
+        longitude: the longitude of the plane's origin, in degrees.
+        altitude: the altitude of the plane's origin above the ellipsoid, in metres.
     """
 
     latitude: float
@@ -120,7 +120,7 @@ class TangentPlane:
     altitude: float
 
     def point_of(self, latitude: float, longitude: float, altitude: float) -> Vector3:
-        """Convert a position (degrees, and metres above the ellipsoid) to a point in metres."""
+        """Convert latitude and longitude in degrees and altitude in metres to a point in metres."""
         x, y, z = _geocentric(latitude, longitude, altitude)
         ox, oy, oz = _geocentric(self.latitude, self.longitude, self.altitude)
         east, north, up = self._axes()

@@ -1,8 +1,10 @@
 """Extended and unscented Kalman filters for the motion of a body.
 
-Both predict a state (see `motion_model`) and its covariance over time, and correct them by measurements of some of the
-15 quantities. Sources: T. Moore and D. Stouch 2014 for the extended filter and its default noise; S. Julier and J.
-Uhlmann, "Unscented Filtering and Nonlinear Estimation", 2004, for the unscented filter.
+Both filters predict a state (see `motion_model`) and its covariance over time, and correct them by measurements of some
+of the 15 quantities.
+
+Sources: T. Moore and D. Stouch 2014 for the extended filter and its default noise; S. Julier and J. Uhlmann, "Unscented
+Filtering and Nonlinear Estimation", 2004, for the unscented filter.
 """
 
 from __future__ import annotations
@@ -44,10 +46,10 @@ class Measurement:
     Attributes:
         source: the name of the sensor.
         time_ns: the time of the measurement.
-        values: shape (15,).
-        covariance: shape (15, 15).
-        used: which values are used.
-        threshold: the maximum deviation from the expected value, in standard deviations; farther readings are rejected.
+        values: the measured values, shape (15,).
+        covariance: the covariance of the values, shape (15, 15).
+        used: which of the 15 values are used.
+        threshold: the maximum Mahalanobis distance from the expected values; measurements beyond it are rejected.
         control: the velocities commanded at that time, shape (6,), and the time of the command.
     """
 
@@ -62,12 +64,14 @@ class Measurement:
 
 @dataclass(frozen=True, slots=True)
 class Control:
-    """The response of a body to commanded velocities: vx, vy, vz and the rates of roll, pitch and yaw.
+    """The response of a body to six commanded velocities.
+
+    The velocities are vx, vy, vz and the rates of roll, pitch and yaw.
 
     Attributes:
         used: which of the six velocities are controlled.
         timeout_ns: the age from which a command counts as zero velocity.
-        acceleration_limits: m/s2 and rad/s2.
+        acceleration_limits: the maximum accelerations, in m/s2 and rad/s2.
         acceleration_gains: the acceleration per unit of velocity error.
         deceleration_limits: the limits for slowing down.
         deceleration_gains: the gains for slowing down.
@@ -122,14 +126,14 @@ class Settings:
 
 
 class KalmanFilter(ABC):
-    """A state and its covariance, predicted from measurement to measurement.
+    """The base class of filters that predict and correct a state and its covariance.
 
     Args:
         settings: the settings; see `Settings`.
 
     Attributes:
-        state: shape (15,).
-        covariance: shape (15, 15).
+        state: the estimated state, shape (15,).
+        covariance: the covariance of the state, shape (15, 15).
         time_ns: the time of the state.
         initialized: whether a measurement was received.
     """
@@ -149,18 +153,19 @@ class KalmanFilter(ABC):
         self.command: tuple[Vector, int] = (np.zeros(6), 0)
 
     def snapshot(self) -> Snapshot:
-        """Return the state of the filter, for `restore`."""
+        """Return a copy of the filter's state that can be passed to `restore`."""
         return Snapshot(self.state.copy(), self.covariance.copy(), self.time_ns, self.initialized, self.command)
 
     def restore(self, snapshot: Snapshot) -> None:
-        """Restore an earlier state."""
+        """Restore the state that `snapshot` returned."""
         self.state, self.covariance = snapshot.state.copy(), snapshot.covariance.copy()
         self.time_ns, self.initialized, self.command = snapshot.time_ns, snapshot.initialized, snapshot.command
 
     def process(self, measurement: Measurement) -> bool:
-        """Predict up to the time of a measurement, unless that is in the past, and correct the state by it.
+        """Predict the state up to the time of a measurement, and correct it by the measurement.
 
-        The first measurement initializes the state. Returns whether the measurement was used.
+        A measurement from before the state's time corrects the state without a prediction. The first measurement
+        initializes the state. Returns whether the measurement was used.
         """
         if not self.initialized:
             self._begin(measurement)
@@ -170,14 +175,17 @@ class KalmanFilter(ABC):
         return self.correct(measurement)
 
     def predict(self, time_ns: int) -> None:
-        """Predict up to a time without a measurement."""
+        """Predict the state and its covariance at a later time."""
         seconds = (time_ns - self.time_ns) / 1e9
         self._follow_commands(time_ns, seconds)
         self._predict(seconds)
         self.time_ns = time_ns
 
     def correct(self, measurement: Measurement) -> bool:
-        """Correct the state by a current measurement; return whether it passed the Mahalanobis test."""
+        """Correct the state by a measurement at the state's time.
+
+        Returns whether the measurement was used: it must contain finite values, and pass the Mahalanobis test.
+        """
         used = _used(measurement)
         if not used:
             return False
@@ -249,7 +257,7 @@ class UnscentedKalmanFilter(KalmanFilter):
     Args:
         settings: the settings; see `Settings`.
         alpha: the spread of the sigma points around the state.
-        kappa: shifts the weight from the state to the sigma points.
+        kappa: a secondary scaling of the spread.
         beta: prior knowledge of the distribution; 2 for a normal distribution.
     """
 
@@ -282,7 +290,10 @@ class UnscentedKalmanFilter(KalmanFilter):
 
 
 def _square_root(covariance: Matrix) -> Matrix:
-    """Return a matrix square root of a covariance, or of the nearest valid one if rounding made it invalid."""
+    """Return a matrix square root of a covariance.
+
+    If rounding made the covariance invalid, the root is of the nearest positive semidefinite matrix.
+    """
     try:
         root: Matrix = np.asarray(np.linalg.cholesky(covariance), dtype=np.float64)
     except np.linalg.LinAlgError:
@@ -292,7 +303,7 @@ def _square_root(covariance: Matrix) -> Matrix:
 
 
 def _used(measurement: Measurement) -> list[int]:
-    """Return the indices of the quantities that a measurement provides: the used values that are finite."""
+    """Return the indices of a measurement's used values, if they and their variances are finite."""
     values, covariance = measurement.values, measurement.covariance
     return [
         index

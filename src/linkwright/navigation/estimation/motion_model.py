@@ -1,4 +1,4 @@
-"""The motion model of a body in space: its state, prediction, and the prediction's Jacobian.
+"""The motion model of a body in space: its state, prediction and Jacobian.
 
 The state of 15 numbers consists of position (m) and roll, pitch, yaw (rad) in the world, and of linear velocity (m/s),
 angular velocity (rad/s) and linear acceleration (m/s2) in the body. Acceleration and angular velocity are constant
@@ -109,7 +109,7 @@ def state_jacobian(state: Vector, seconds: float) -> Matrix:
 
 
 def _shift(state: Vector, seconds: float) -> Vector:
-    """Return the displacement of the body, in its own axes."""
+    """Return the displacement of the body after some seconds, in the body's axes."""
     shift: Vector = state[VELOCITY] * seconds + state[ACCELERATION] * (0.5 * seconds * seconds)
     return shift
 

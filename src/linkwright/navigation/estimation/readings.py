@@ -1,4 +1,4 @@
-"""Conversion of poses, twists and accelerations of sensors to measurements of the body that carries them.
+"""Conversion of poses, twists and accelerations of sensors to measurements of the body that carries the sensors.
 
 Source of the rules: robot_localization. Two computations that are approximate there are exact here: the orientation of
 an IMU that is mounted rotated, and the attitude with which gravity is removed if the IMU provides no orientation.
@@ -49,9 +49,9 @@ Used = tuple[bool, ...]
 
 
 class Reading(NamedTuple):
-    """Values of the state, their covariance, and which of them were measured.
+    """Values of the state, their covariance, and flags of the measured values.
 
-    Their shapes are (15,) and (15, 15), with 15 flags.
+    The values have shape (15,) and the covariance has shape (15, 15); there are 15 flags.
     """
 
     values: Vector
@@ -61,7 +61,7 @@ class Reading(NamedTuple):
 
 @dataclass(slots=True)
 class PoseReader:
-    """Converts the poses of one sensor.
+    """A converter from the poses of one sensor to readings of the body.
 
     Args:
         used: which of the 15 values of the state the sensor provides; only the first six count.
@@ -86,7 +86,7 @@ class PoseReader:
 
         Args:
             pose: the pose of the body in the sensor's world.
-            covariance: shape (6, 6).
+            covariance: the covariance of the pose, shape (6, 6).
             sensor: the pose of the sensor's world in the filter's world.
             time_ns: the time of the measurement.
 
@@ -100,11 +100,11 @@ class PoseReader:
     def read_orientation(
         self, orientation: Quaternion, covariance: Matrix, mounting: Transform, time_ns: int
     ) -> Reading | None:
-        """Convert the orientation of an IMU.
+        """Convert the orientation of an IMU; see `read` for the result.
 
         Args:
             orientation: the orientation of the IMU in the world.
-            covariance: shape (6, 6).
+            covariance: the covariance of the pose, shape (6, 6).
             mounting: the pose of the IMU in the body.
             time_ns: the time of the measurement.
         """
@@ -155,12 +155,12 @@ class PoseReader:
 def read_twist(
     linear: Vector, angular: Vector, covariance: Matrix, mounting: Transform, rates: Vector, used: Used, *, two_d: bool
 ) -> Reading:
-    """Convert a twist.
+    """Convert a twist in a sensor's frame to a reading of the body's velocities.
 
     Args:
-        linear: m/s, in the sensor's frame.
-        angular: rad/s, in the sensor's frame.
-        covariance: shape (6, 6).
+        linear: the linear velocity in the sensor's frame, in m/s.
+        angular: the angular velocity in the sensor's frame, in rad/s.
+        covariance: the covariance of the twist, shape (6, 6).
         mounting: the pose of the sensor in the body.
         rates: the estimated angular velocity of the body, which moves a sensor mounted away from the body's origin.
         used: which of the 15 values the sensor provides; only the velocities count.
@@ -188,11 +188,11 @@ def read_twist(
 def read_acceleration(
     acceleration: Vector, covariance: Matrix, mounting: Transform, used: Used, *, two_d: bool
 ) -> Reading:
-    """Convert an acceleration.
+    """Convert an acceleration in a sensor's frame to a reading of the body's acceleration.
 
     Args:
-        acceleration: m/s2, in the sensor's frame, without gravity.
-        covariance: shape (3, 3).
+        acceleration: the acceleration in the sensor's frame without gravity, in m/s2.
+        covariance: the covariance of the acceleration, shape (3, 3).
         mounting: the pose of the sensor in the body; only its rotation is used.
         used: which of the 15 values the sensor provides; only the accelerations count.
         two_d: whether the body moves on a plane.
@@ -209,9 +209,9 @@ def without_gravity(acceleration: Vector, orientation: Quaternion, gravity: floa
     """Subtract gravity from a measured acceleration.
 
     Args:
-        acceleration: m/s2, in the sensor's frame.
+        acceleration: the measured acceleration in the sensor's frame, in m/s2.
         orientation: the orientation of the sensor in the world.
-        gravity: m/s2.
+        gravity: the gravitational acceleration, in m/s2.
     """
     rest: Vector = acceleration - rotation_matrix(orientation)[2] * gravity
     return rest
@@ -231,7 +231,10 @@ def _finished(reading: Reading, used: Used, *, two_d: bool) -> Reading:
 
 
 def _known_pose(pose: Transform, used: Used) -> tuple[Transform, Used]:
-    """Return a pose whose non-finite values are replaced by identity, and which of the 15 values remain."""
+    """Return a pose with finite values, and the flags of the used values that were finite.
+
+    Parts that are not finite are replaced by the identity.
+    """
     x, y, z = (value if isfinite(value) else 0.0 for value in pose[:3])
     known = _finite(used, POSITION, np.array(pose[:3]))
     if all(isfinite(value) for value in pose[3:]):
@@ -240,7 +243,7 @@ def _known_pose(pose: Transform, used: Used) -> tuple[Transform, Used]:
 
 
 def _finite(used: Used, part: slice, values: Vector) -> Used:
-    """Return which values are used and finite."""
+    """Return the flags of the used values, with those of non-finite values of a part cleared."""
     flags = list(used)
     flags[part] = [bool(value) for value in np.array(used[part]) & np.isfinite(values)]
     return tuple(flags)
@@ -252,7 +255,7 @@ def _numbers(values: Vector) -> Vector:
 
 
 def _rotated_components(used: Used, known: Used, turn: Matrix, part: slice) -> Used:
-    """Return which components are known in the body's axes when only some are known in the sensor's."""
+    """Return flags of the body's components that depend only on known sensor components."""
     lost = tuple(each and not here for each, here in zip(used, known, strict=True))
     return tuple(
         bool(here and not gone)
@@ -263,7 +266,7 @@ def _rotated_components(used: Used, known: Used, turn: Matrix, part: slice) -> U
 
 
 def _affected_components(flags: Used, turn: Matrix, part: slice) -> NDArray[np.bool_]:
-    """Return which components in the body's axes depend on a flagged component in the sensor's axes."""
+    """Return a mask of the body's components that depend on a flagged sensor component."""
     columns = turn[:, np.array(flags[part], dtype=bool)]
     touched: NDArray[np.bool_] = np.sum(columns * columns, axis=1) >= _LEAST * _LEAST
     return touched

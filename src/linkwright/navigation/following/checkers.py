@@ -1,4 +1,4 @@
-"""Goal checkers and progress checkers, as in nav2's controller_server.
+"""Goal checkers and progress checkers.
 
 Source: nav2_controller's goal checkers and progress checkers, with their parameters.
 """
@@ -38,7 +38,7 @@ class SimpleGoalParameters:
 class SimpleGoalChecker(GoalChecker):
     """A goal checker with tolerances of position and heading.
 
-    If `stateful` is set, only the heading is checked once the position was reached.
+    If `stateful` is set, only the heading is checked once the position has been reached.
     """
 
     def __init__(self, parameters: SimpleGoalParameters | None = None) -> None:
@@ -51,7 +51,7 @@ class SimpleGoalChecker(GoalChecker):
         self._is_there = False
 
     def is_reached(self, pose: Pose, goal: Pose, velocity: Velocity) -> bool:
-        """Return whether the goal is reached."""
+        """Return whether the position and heading are within the tolerances."""
         if not self._is_there:
             if hypot(pose[0] - goal[0], pose[1] - goal[1]) > self._parameters.xy_goal_tolerance:
                 return False
@@ -75,7 +75,7 @@ class StoppedGoalChecker(SimpleGoalChecker):
         super().__init__(self._still)
 
     def is_reached(self, pose: Pose, goal: Pose, velocity: Velocity) -> bool:
-        """Return whether the goal is reached."""
+        """Return whether the pose and the velocity are within the tolerances."""
         return (
             super().is_reached(pose, goal, velocity)
             and hypot(velocity.x, velocity.y) <= self._still.trans_stopped_velocity
@@ -93,13 +93,16 @@ class ProgressParameters:
 
 @dataclass(frozen=True, kw_only=True)
 class PoseProgressParameters(ProgressParameters):
-    """Parameters of nav2's PoseProgressChecker, in radians: rotation also counts as progress."""
+    """Parameters of nav2's PoseProgressChecker, which also counts rotation as progress.
+
+    Angles are in radians.
+    """
 
     required_movement_angle: float = 0.5
 
 
 class ProgressChecker:
-    """Detects that a robot makes no progress: it must move or turn by a minimum within a time limit."""
+    """A checker of whether a robot moves or turns by a minimum amount within a time limit."""
 
     def __init__(self, parameters: ProgressParameters | None = None) -> None:
         self._parameters = parameters or ProgressParameters()
@@ -111,7 +114,7 @@ class ProgressChecker:
         self._from = None
 
     def makes_progress(self, pose: Pose, time_ns: int) -> bool:
-        """Return whether the robot made enough progress within the time limit."""
+        """Return whether the robot made enough progress, or the time limit has not passed yet."""
         if self._from is None or self._has_moved(self._from, pose):
             self._from, self._since_ns = pose, time_ns
             return True

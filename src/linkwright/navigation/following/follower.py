@@ -1,4 +1,4 @@
-"""The base class of path followers, their input in each cycle, and shared geometry."""
+"""The base class of path followers, the input of a control cycle, and shared geometry."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ Pose = tuple[float, float, float]
 
 
 class Velocity(NamedTuple):
-    """A planar velocity of the robot, in its own frame.
+    """A planar velocity of the robot, in the robot's frame.
 
     Attributes:
-        x: the velocity forward, in m/s.
+        x: the forward velocity, in m/s.
         y: the velocity to the left, in m/s.
         yaw: the counterclockwise angular velocity, in rad/s.
     """
@@ -43,7 +43,7 @@ class Situation:
         velocity: the current velocity of the robot.
         path: the remaining path, of shape (poses, 3): x, y (metres) and yaw (radians); at least two poses.
         costmap: the costmap around the robot.
-        footprint: the footprint of the robot, in its own frame.
+        footprint: the footprint in the frame of the robot.
         period: the period of the cycles, in seconds.
         xy_tolerance: the distance from the end within which the path counts as completed, in metres.
     """
@@ -58,7 +58,7 @@ class Situation:
 
 
 class FollowingError(Exception):
-    """Raised when no valid velocity exists; the message gives the reason."""
+    """Raised when there is no valid velocity; the message gives the reason."""
 
 
 class Follower(ABC):
@@ -77,16 +77,16 @@ class Follower(ABC):
 
     @abstractmethod
     def limit_speed(self, speed: float, *, is_percentage: bool = False) -> None:
-        """Limit the speed; 0 removes the limit.
+        """Limit the speed, or remove the limit.
 
         Args:
-            speed: the limit in m/s, or in per cent of the maximum speed.
+            speed: the limit in m/s, or in per cent of the maximum speed; 0 for no limit.
             is_percentage: whether `speed` is in per cent.
         """
 
 
 def limited(highest: float, speed: float, *, is_percentage: bool) -> float:
-    """Return the maximum speed under a limit; see `Follower.limit_speed`."""
+    """Return a maximum speed reduced to a limit, in m/s; see `Follower.limit_speed`."""
     if not speed > 0.0:
         return highest
     return highest * min(speed, 100.0) / 100.0 if is_percentage else min(highest, speed)
@@ -107,18 +107,19 @@ def to_robot_frame(pose: Pose, points: NDArray[np.float64]) -> NDArray[np.float6
 
 
 def lengths_along(path: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the distance of each pose from the beginning of a path along the path, in metres, of shape (poses,)."""
+    """Return the distance along a path to each of its poses, in metres, of shape (poses,)."""
     steps = np.hypot(*np.diff(path[:, :2], axis=0).T)
     lengths: NDArray[np.float64] = np.concatenate(([0.0], np.cumsum(steps)))
     return lengths
 
 
 def predict_poses(pose: Pose, velocities: NDArray[np.float64], times: NDArray[Any]) -> NDArray[np.float64]:
-    """Return the poses of a robot that moves at constant velocity: exactly, on circular arcs.
+    """Return the poses of a robot that moves at constant velocities, on circular arcs.
 
     Args:
         pose: the initial pose.
-        velocities: along x and y (m/s) and about z (rad/s) in the robot's frame, of shape (velocities, 3).
+        velocities: the velocities along x and y (m/s) and about z (rad/s) in the robot's frame, of shape (velocities,
+            3).
         times: the times in seconds, of shape (times,).
 
     Returns:
@@ -127,9 +128,9 @@ def predict_poses(pose: Pose, velocities: NDArray[np.float64], times: NDArray[An
     x, y, yaw = pose
     vx, vy, turning = (velocities[:, axis, None] for axis in range(3))
     turned = turning * times
-    along = np.sinc(turned / np.pi) * times  # sin(wt)/w
+    along = np.sinc(turned / np.pi) * times  # sin(wt) / w, also for w = 0.
     half = 0.5 * turned
-    across = np.sinc(half / np.pi) * np.sin(half) * times  # (1 - cos(wt))/w
+    across = np.sinc(half / np.pi) * np.sin(half) * times  # (1 - cos(wt)) / w, also for w = 0.
     dx, dy = vx * along - vy * across, vx * across + vy * along
     cosine, sine = np.cos(yaw), np.sin(yaw)
     poses: NDArray[np.float64] = np.stack(

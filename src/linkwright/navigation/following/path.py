@@ -1,4 +1,4 @@
-"""Progress along a path: the part behind the robot, and the part ahead."""
+"""A path and the robot's progress along it."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from linkwright.navigation.following.follower import lengths_along
 
 
 class FollowedPath:
-    """A path, and the robot's progress on it.
+    """A path and the robot's progress along it.
 
     The robot is searched for only within a limited distance ahead of its last position, so a path that crosses itself
     is followed in order.
 
     Args:
-        poses: of shape (poses, 3): x, y (metres) and yaw (radians); at least two.
-        search: how far along the path the robot is searched for, in metres.
+        poses: the poses of the path, of shape (poses, 3): x, y (metres) and yaw (radians); at least two.
+        search: how far ahead along the path the robot is searched for, in metres.
     """
 
     def __init__(self, poses: NDArray[np.float64], search: float) -> None:
@@ -34,15 +34,15 @@ class FollowedPath:
         self._index += int(np.argmin((near[:, 0] - x) ** 2 + (near[:, 1] - y) ** 2))
 
     def poses_ahead(self, distance: float) -> NDArray[np.float64]:
-        """Return the poses ahead of the robot up to a distance along the path in metres.
+        """Return the poses ahead of the robot up to a distance along the path, in metres.
 
-        There are at least two.
+        At least two poses are returned.
         """
         end = int(np.searchsorted(self._lengths, self._lengths[self._index] + distance, side="right"))
         first = min(self._index, len(self.poses) - 2)
         return self.poses[first : max(end, first + 2)]
 
     def remaining(self, x: float, y: float) -> float:
-        """Return the distance along the path from a position to the end of the path, in metres."""
+        """Return the remaining distance from a position along the path to its end, in metres."""
         px, py = self.poses[self._index, :2]
         return hypot(px - x, py - y) + float(self._lengths[-1] - self._lengths[self._index])

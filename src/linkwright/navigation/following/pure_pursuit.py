@@ -1,6 +1,6 @@
 """Regulated pure pursuit, a path follower.
 
-It follows an arc to a point on the path ahead, and slows down in curves and near obstacles.
+The robot follows an arc to a point on the path ahead, and slows down in curves and near obstacles.
 
 Source: Macenski et al., "Regulated Pure Pursuit for Robot Path Tracking" (2023), and the parameters of
 nav2_regulated_pure_pursuit_controller.
@@ -61,7 +61,7 @@ class PurePursuitParameters:
 
 
 class RegulatedPurePursuit(Follower):
-    """A follower that uses regulated pure pursuit."""
+    """A path follower that uses regulated pure pursuit."""
 
     def __init__(self, parameters: PurePursuitParameters | None = None) -> None:
         self.parameters = parameters or PurePursuitParameters()
@@ -123,7 +123,7 @@ class RegulatedPurePursuit(Follower):
         )
 
     def _speed(self, curvature: float, seen: NDArray[np.float64], situation: Situation) -> float:
-        """Return the speed, in m/s."""
+        """Return the speed in m/s, reduced in curves, near obstacles and near the path's end."""
         parameters = self.parameters
         speed = self._top
         if parameters.use_regulated_linear_velocity_scaling:
@@ -138,9 +138,10 @@ class RegulatedPurePursuit(Follower):
         return speed
 
     def _speed_near_obstacles(self, pose: Pose, costmap: Costmap, footprint: Footprint) -> float:
-        """Return the speed limit near obstacles, from the distance that the inflated cost implies.
+        """Return the speed limit at a pose, in m/s.
 
-        It applies within `cost_scaling_dist` of an obstacle.
+        The distance from obstacles is derived from the inflated cost. Beyond `cost_scaling_dist`, the limit is the
+        maximum speed.
         """
         parameters = self.parameters
         cost = int(costmap.cost_at(np.array(pose[:2])))
@@ -155,9 +156,12 @@ class RegulatedPurePursuit(Follower):
         return self._top * parameters.cost_scaling_gain * distance / parameters.cost_scaling_dist
 
     def _check(self, command: Velocity, carrot_distance: float, situation: Situation) -> None:
-        """Raise `FollowingError` if there is an obstacle ahead.
+        """Check that a velocity does not lead to a collision.
 
-        The footprint is checked within the look-ahead time and up to the carrot.
+        The footprint is checked within the permitted time to a collision, and not beyond the carrot.
+
+        Raises:
+            FollowingError: there is an obstacle ahead.
         """
         limit = self.parameters.max_allowed_time_to_collision_up_to_carrot
         if abs(command.x) > 0.0:
@@ -167,10 +171,12 @@ class RegulatedPurePursuit(Follower):
 
 
 def carrot_on(seen: NDArray[np.float64], lookahead: float) -> NDArray[np.float64]:
-    """Return the interpolated point of a path at a distance from the robot, or the end of a shorter path.
+    """Return the interpolated point of a path at a distance from the robot.
+
+    If the whole path is nearer, its last point is returned.
 
     Args:
-        seen: the points in the robot's frame, of shape (points, 2), in metres.
+        seen: the points of the path in the robot's frame, of shape (points, 2), in metres.
         lookahead: the distance, in metres.
     """
     distances = np.hypot(seen[:, 0], seen[:, 1])
@@ -188,7 +194,7 @@ def carrot_on(seen: NDArray[np.float64], lookahead: float) -> NDArray[np.float64
 
 
 def curvature_to(point: NDArray[np.float64]) -> float:
-    """Return the curvature, in 1/m, of the arc from the robot to a point.
+    """Return the curvature, in 1/m, of the arc from the robot to a point in the robot's frame.
 
     The robot faces along x, so the curvature is 2 y / (x^2 + y^2).
     """
@@ -197,23 +203,25 @@ def curvature_to(point: NDArray[np.float64]) -> float:
 
 
 def speed_in_curve(speed: float, curvature: float, least_radius: float) -> float:
-    """Return the speed in a curve, reduced if the curve is narrow.
+    """Return the speed in a curve, in m/s.
 
-    Below `least_radius`, in metres, the speed is proportional to the radius.
+    If the radius of the curve is below `least_radius`, in metres, the speed is reduced in proportion to the radius.
     """
     radius = 1.0 / abs(curvature) if curvature else np.inf
     return speed * min(1.0, float(radius) / least_radius) if least_radius > 0.0 else speed
 
 
 def turning_speed(angle: float, now: float, period: float, highest: float, acceleration: float) -> float:
-    """Return an angular velocity, in rad/s, from which a rotation by an angle can be stopped in time.
+    """Return an angular velocity from which a rotation by an angle can be stopped in time.
+
+    The velocity is in rad/s.
 
     Args:
         angle: the remaining angle, in radians.
         now: the current angular velocity, in rad/s.
         period: the period of the cycles, in seconds.
         highest: the maximum angular velocity, in rad/s.
-        acceleration: the limit for speeding up and slowing down, in rad/s^2.
+        acceleration: the maximum acceleration and deceleration, in rad/s^2.
     """
     wanted = copysign(min(highest, sqrt(2.0 * acceleration * abs(angle))), angle)
     if abs(wanted) * period > abs(angle):
@@ -223,7 +231,10 @@ def turning_speed(angle: float, now: float, period: float, highest: float, accel
 
 
 def is_free(situation: Situation, command: Velocity, seconds: float) -> bool:
-    """Return whether the footprint stays free of obstacles for a time at a constant velocity."""
+    """Return whether the footprint touches no obstacle during a motion at constant velocity.
+
+    `seconds` is the duration of the motion.
+    """
     _, circumscribed = radii(situation.footprint)
     fastest = hypot(command.x, command.y) + abs(command.yaw) * circumscribed
     if fastest <= 0.0:
@@ -236,7 +247,7 @@ def is_free(situation: Situation, command: Velocity, seconds: float) -> bool:
 
 
 def _distance_to_cusp(seen: NDArray[np.float64]) -> int:
-    """Return the index of the first point at which the path reverses, or of its last point."""
+    """Return the index of the first point at which the path reverses, or of the last point."""
     steps = np.diff(seen, axis=0)
     back = np.flatnonzero((steps[:-1] * steps[1:]).sum(axis=1) < 0.0)
     return int(back[0]) + 1 if len(back) else len(seen) - 1

@@ -1,4 +1,4 @@
-"""Rotation shim: rotates the robot in place towards a new path before another follower takes over.
+"""The rotation shim, which turns the robot towards a new path before another follower takes over.
 
 Source: nav2_rotation_shim_controller, with its parameters.
 """
@@ -34,7 +34,7 @@ class RotationShimParameters:
 
 
 class RotationShim(Follower):
-    """A follower that first rotates the robot, then lets another follower drive.
+    """A path follower that first turns the robot, and then delegates to another follower.
 
     Args:
         primary: the other follower.

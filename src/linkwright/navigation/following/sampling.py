@@ -1,7 +1,7 @@
 """Path following by sampling velocities: each is simulated for some time, and the best one is commanded.
 
-It replaces both of nav2's sampling controllers, DWB and MPPI. Limits and times use the parameter names of either; the
-scoring of the sampled motions is Linkwright's own.
+This follower replaces both of nav2's sampling controllers, DWB and MPPI. Limits and times use the parameter names of
+either; the scoring of the sampled motions is Linkwright's own.
 
 Source: Fox, Burgard, Thrun, "The Dynamic Window Approach to Collision Avoidance" (1997).
 """
@@ -38,8 +38,8 @@ class Limits:
     Attributes:
         least: the minimum velocities along x, along y and about z.
         most: the maximum velocities along x, along y and about z.
-        acceleration: the maximum acceleration of each.
-        deceleration: the maximum deceleration of each; positive.
+        acceleration: the maximum acceleration of each velocity.
+        deceleration: the maximum deceleration of each velocity; positive.
     """
 
     least: Velocity = _LEAST
@@ -58,9 +58,9 @@ class SamplingParameters:
         seconds: how long each motion is simulated.
         steps: the number of simulation steps.
         off_path: the cost per metre of distance from the path, in metres of the path.
-        off_heading: the cost per radian of deviation from the direction of the path ahead.
-        near_obstacle: the weight of the costmap's highest cost.
-        turn_first: the robot rotates in place while the path's direction differs by more than this, in radians.
+        off_heading: the cost per radian of deviation from the direction of the path ahead, in metres of the path.
+        near_obstacle: the weight of the highest cost that the motion touches in the costmap.
+        turn_first: the angle to the path above which the robot turns in place, in radians.
     """
 
     limits: Limits = field(default_factory=Limits)
@@ -80,7 +80,7 @@ _LOOK_AHEAD = 0.35
 
 
 class SamplingFollower(Follower):
-    """A follower that samples velocities."""
+    """A path follower that samples velocities."""
 
     def __init__(self, parameters: SamplingParameters | None = None) -> None:
         self.parameters = parameters or SamplingParameters()
@@ -113,9 +113,10 @@ class SamplingFollower(Follower):
         return atan2(float(seen[index, 1]), float(seen[index, 0]))
 
     def _checked_turn(self, angle: float, situation: Situation) -> Velocity:
-        """Return the velocity to rotate in place by an angle.
+        """Return the velocity to rotate in place by an angle, after a check for collisions.
 
-        Raises `FollowingError` if an obstacle is in the way.
+        Raises:
+            FollowingError: an obstacle is in the way.
         """
         limits, now = self.parameters.limits, situation.velocity
         wanted = Velocity(
@@ -130,9 +131,12 @@ class SamplingFollower(Follower):
         return wanted
 
     def _best(self, situation: Situation) -> Velocity:
-        """Return the best collision-free velocity.
+        """Return the next cycle's velocity towards the best collision-free candidate.
 
         Footprints are checked in the order of the scores, best first.
+
+        Raises:
+            FollowingError: every candidate that was checked leads to a collision.
         """
         parameters = self.parameters
         candidates = self._candidates(situation)
@@ -149,7 +153,7 @@ class SamplingFollower(Follower):
         raise FollowingError("every velocity that was tried leads into an obstacle")
 
     def _candidates(self, situation: Situation) -> NDArray[np.float64]:
-        """Return velocities that can be reached within the simulated time, of shape (candidates, 3)."""
+        """Return velocities that are reachable within the simulated time, of shape (candidates, 3)."""
         parameters, limits = self.parameters, self.parameters.limits
         highest = (min(limits.most.x, self._top), limits.most.y, limits.most.yaw)
         axes = []
@@ -163,9 +167,9 @@ class SamplingFollower(Follower):
         return candidates
 
     def _reachable(self, wanted: Velocity, situation: Situation) -> Velocity:
-        """Return the next cycle's velocity on the way to another one.
+        """Return the velocity that the robot can reach in the next cycle towards a wanted one.
 
-        All axes complete the same share of their change.
+        All components complete the same share of their change.
         """
         limits, now, period = self.parameters.limits, situation.velocity, situation.period
         share = 1.0
@@ -178,7 +182,10 @@ class SamplingFollower(Follower):
     def _motion_costs(
         self, ways: NDArray[np.float64], costs: NDArray[np.float64], situation: Situation
     ) -> NDArray[np.float64]:
-        """Return the costs of motions, in metres of the path, of shape (motions,)."""
+        """Return the costs of motions, in metres of the path, of shape (motions,).
+
+        `ways` are the predicted poses, and `costs` are the highest costs in the costmap, from 0 to 1.
+        """
         parameters = self.parameters
         path = situation.path
         lengths = lengths_along(path)
@@ -202,7 +209,7 @@ class SamplingFollower(Follower):
 
 
 def _braked(speed: float, deceleration: float, period: float) -> float:
-    """Return the speed after a cycle of braking."""
+    """Return the speed after one cycle of braking, in m/s."""
     return float(np.sign(speed)) * max(0.0, abs(speed) - deceleration * period)
 
 

@@ -1,1 +1,1 @@
-"""Occupancy grids: planes of square cells in a frame."""
+"""Occupancy grids: grids of square cells with a pose in a frame."""

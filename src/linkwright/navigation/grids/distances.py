@@ -1,4 +1,4 @@
-"""Distance fields: the distance of each cell from the nearest marked cell."""
+"""Distance fields: grids of the distance from the nearest marked cell."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A grid of square cells in a frame."""
+"""A grid of square cells with a pose in a frame."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ UNKNOWN: Final = -1
 
 @dataclass(eq=False, kw_only=True)
 class Grid:
-    """A grid of square cells, and its pose in a frame.
+    """A grid of square cells with a pose in a frame.
 
     Args:
         cells: the values, of shape (rows, columns): ``cells[row, column]``, rows along y. Their type and meaning depend
@@ -25,7 +25,7 @@ class Grid:
         resolution: the side of a cell, in metres.
         x: the x coordinate of the outer corner of cell (0, 0) in the frame of the grid, in metres.
         y: the y coordinate of that corner, in metres.
-        yaw: the rotation of the rows about that corner, in radians.
+        yaw: the rotation of the grid about that corner, in radians.
     """
 
     cells: NDArray[Any]
@@ -45,10 +45,10 @@ class Grid:
         return int(self.cells.shape[1])
 
     def cells_of(self, points: NDArray[np.float64]) -> NDArray[np.int64]:
-        """Return the cells that contain points; the cells may be outside the grid.
+        """Return the rows and columns of the cells that contain points, even outside the grid.
 
         Args:
-            points: of shape (..., 2), x and y in the frame of the grid, in metres.
+            points: x and y in the frame of the grid, in metres, of shape (..., 2).
 
         Returns:
             Rows and columns, of shape (..., 2).
@@ -79,7 +79,10 @@ class Grid:
         return points
 
     def has(self, indices: NDArray[np.integer[Any]]) -> NDArray[np.bool_]:
-        """Return which cells are inside the grid, of shape (...), for rows and columns of shape (..., 2)."""
+        """Return a mask of the cells that are inside the grid, of shape (...).
+
+        `indices` are rows and columns, of shape (..., 2).
+        """
         rows, columns = indices[..., 0], indices[..., 1]
         inside: NDArray[np.bool_] = (rows >= 0) & (rows < self.rows) & (columns >= 0) & (columns < self.columns)
         return inside

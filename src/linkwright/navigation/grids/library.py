@@ -1,4 +1,4 @@
-"""Import of SciPy, which the extra ``navigation`` installs."""
+"""Import of SciPy, which is installed with the extra ``navigation``."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ from linkwright.navigation.grids.grid import Grid
 
 
 class BadGridError(ValueError):
-    """Raised when a message is not a valid grid; the text gives the reason."""
+    """Raised when a message is not a valid grid; the error message gives the reason."""
 
 
 def occupancy_message(grid: Grid, frame: str, stamp: Any) -> Any:
@@ -22,7 +22,7 @@ def occupancy_message(grid: Grid, frame: str, stamp: Any) -> Any:
     Args:
         grid: the grid, whose cells are per cent or `UNKNOWN`.
         frame: the frame of the grid.
-        stamp: the builtin_interfaces/Time of the message, and the time at which the map was loaded.
+        stamp: the builtin_interfaces/Time for the stamp and the load time of the map.
     """
     message = get_message("nav_msgs/msg/OccupancyGrid")()
     message.header.frame_id = frame
@@ -52,7 +52,7 @@ def grid_of(message: Any) -> Grid:
     turned = info.origin.orientation
     return Grid(
         cells=cells.reshape(info.height, info.width),
-        resolution=float(str(np.float32(info.resolution))),  # As float32, 0.05 arrives as 0.0500000007.
+        resolution=float(str(np.float32(info.resolution))),  # The float32 field would turn 0.05 into 0.0500000007.
         x=info.origin.position.x,
         y=info.origin.position.y,
         yaw=rpy_from_quaternion((turned.x, turned.y, turned.z, turned.w))[2],

@@ -1,4 +1,4 @@
-"""Counts of the rays that end in each cell of a grid or pass through it."""
+"""Counts of the rays that end in each cell of a grid or pass through the cell."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ def ray_counts(
     ends: NDArray[np.integer[Any]],
     hits: NDArray[np.bool_] | None = None,
 ) -> tuple[Counts, Counts]:
-    """Count the rays that end in each cell, and those that pass through it.
+    """Count the rays that end in each cell, and the rays that pass through each cell.
 
     Args:
-        shape: the rows and columns of the grid; cells outside it are ignored.
+        shape: the rows and columns of the grid; cells outside the grid are ignored.
         start: the row and column of the common start, of shape (2,), or of each ray's start, of shape (rays, 2).
         ends: the row and column of each ray's end, of shape (rays, 2).
         hits: whether each ray hit something, of shape (rays,); None if all did. A ray without a hit passes through its

@@ -17,7 +17,7 @@ _OUTSIDE: Final = -1.0
 
 
 def cells_on_lines(starts: NDArray[np.integer[Any]], ends: NDArray[np.integer[Any]]) -> tuple[Cells, Cells]:
-    """Return the cells on straight lines between cells, by Bresenham's algorithm for all lines at a time.
+    """Return the cells on straight lines between cells, by Bresenham's algorithm.
 
     Args:
         starts: rows and columns, of shape (lines, 2), or (2,) if all lines start at one cell.
@@ -58,12 +58,13 @@ def ranges(distances: Grid, points: NDArray[np.float64], angles: NDArray[np.floa
     shape = np.broadcast_shapes(points.shape[:-1], angles.shape)
     c, s, size = cos(distances.yaw), sin(distances.yaw), distances.resolution
     x, y, turned = points[..., 0] - distances.x, points[..., 1] - distances.y, angles - distances.yaw
-    # In cells of the grid with a border, where rays leave the grid. Single precision suffices for half a cell.
+    # Coordinates are in cells of the grid with a border, where rays leave the grid. Single precision suffices for half
+    # a
+    # cell.
     column, row = _flat((c * x + s * y) / size + 1.0, shape), _flat((c * y - s * x) / size + 1.0, shape)
     along, across = _flat(np.cos(turned), shape), _flat(np.sin(turned), shape)
     field = np.pad((distances.cells / size).astype(np.float32), 1, constant_values=_OUTSIDE)
-    # Advance no farther than the border of the cell to which the distance was measured, and always at least half a
-    # cell;
+    # Advance no farther than the border of the cell to which the distance was measured, but by at least half a cell;
     # otherwise rays could stop.
     ways = np.where(field > 0.0, np.maximum(field - np.float32(0.75), np.float32(0.5)), field).ravel()
     most = np.float32(limit / size)
@@ -89,6 +90,9 @@ def _flat(values: NDArray[np.float64], shape: tuple[int, ...]) -> NDArray[np.flo
 
 
 def _index(values: NDArray[np.float32], last: int) -> NDArray[np.int32]:
-    """Return the row or column index of a coordinate in cells, clipped to the grid."""
+    """Return the row or column indices of coordinates in cells, clipped to the grid.
+
+    `values` are overwritten.
+    """
     np.minimum(np.maximum(values, np.float32(0.0), out=values), np.float32(last), out=values)
     return values.astype(np.int32)

@@ -16,7 +16,7 @@ Points = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Beams:
-    """Selected beams of a scan, in the plane.
+    """Selected beams of a scan, projected to the plane.
 
     Attributes:
         origin: x and y of the laser in the frame of the robot, in metres.
@@ -48,13 +48,13 @@ class Beams:
 def beams_of_scan(
     scan: Any, laser_in_robot: Transform, most: int, least_range: float = -1.0, range_max: float = -1.0
 ) -> Beams:
-    """Return evenly spaced beams of a sensor_msgs/LaserScan, without beams that are not finite.
+    """Return evenly spaced beams of a sensor_msgs/LaserScan, without beams whose range is NaN.
 
     Args:
         scan: the message.
-        laser_in_robot: the pose of the laser, which may be upside down or tilted.
+        laser_in_robot: the pose of the laser in the frame of the robot; the laser may be upside down or tilted.
         most: the maximum number of beams.
-        least_range: shorter ranges count as no return, in metres; negative for the scan's own limit.
+        least_range: beams up to this length count as having no return, in metres; negative for the scan's own limit.
         range_max: longer ranges count as this range, in metres; negative for the scan's own limit.
     """
     ranges = np.asarray(scan.ranges, np.float64)

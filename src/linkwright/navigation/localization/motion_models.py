@@ -21,7 +21,7 @@ _STANDS_STILL = 0.01
 
 @dataclass(frozen=True, slots=True)
 class Noise:
-    """The noise of odometry: nav2's ``alpha1`` to ``alpha5``.
+    """The parameters of the odometry noise: nav2's ``alpha1`` to ``alpha5``.
 
     Attributes:
         turn_of_turn: the rotation error caused by rotation.
@@ -57,7 +57,7 @@ def differential(
     noise: Noise,
     random: np.random.Generator,
 ) -> None:
-    """Move particles by the differential model: rotation, translation, rotation."""
+    """Move particles in place by the differential model: rotation, translation, rotation."""
     x, y, turn = after[0] - before[0], after[1] - before[1], wrap_angle(after[2] - before[2])
     drive = hypot(x, y)
     first = 0.0 if drive < _STANDS_STILL else wrap_angle(atan2(y, x) - before[2])
@@ -84,7 +84,10 @@ def omnidirectional(
     noise: Noise,
     random: np.random.Generator,
 ) -> None:
-    """Move particles by the omnidirectional model: translation in any direction, and rotation."""
+    """Move particles in place by the omnidirectional model.
+
+    The model consists of a translation in any direction, and a rotation.
+    """
     x, y, turn = after[0] - before[0], after[1] - before[1], wrap_angle(after[2] - before[2])
     drive = hypot(x, y)
     count = len(particles)

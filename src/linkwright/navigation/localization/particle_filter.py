@@ -21,7 +21,7 @@ _CONVERGED = 0.5
 
 @dataclass(frozen=True, slots=True)
 class FilterSettings:
-    """Number of particles, and when random ones are added.
+    """Settings of a particle filter: the number of particles, and the addition of random ones.
 
     Attributes:
         min_particles: the minimum number of particles.
@@ -42,7 +42,7 @@ class FilterSettings:
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """The estimated pose.
+    """An estimated pose.
 
     Attributes:
         pose: x and y in metres and yaw in radians: the mean of the most likely cluster.
@@ -64,7 +64,7 @@ class ParticleFilter:
 
     Attributes:
         particles: the particles, of shape (n, 3).
-        weights: their weights, of shape (n,); the sum is 1.
+        weights: the weights of the particles, of shape (n,), with a sum of 1.
     """
 
     def __init__(self, settings: FilterSettings, seed: int = 0) -> None:
@@ -75,7 +75,7 @@ class ParticleFilter:
         self._slow = self._fast = 0.0
 
     def begin(self, particles: Poses) -> None:
-        """Set the particles, with equal weights."""
+        """Replace the particles, and give all of them the same weight."""
         self.particles = particles
         self.weights = np.full(len(particles), 1.0 / len(particles))
         self._slow = self._fast = 0.0
@@ -88,13 +88,14 @@ class ParticleFilter:
         self.begin(np.array(pose) + drawn @ axes.T)
 
     def weigh(self, likelihoods: NDArray[np.float64]) -> None:
-        """Multiply the weights by the likelihood of each particle."""
+        """Multiply the weights by the likelihood of each particle, and normalise them."""
         weights = self.weights * likelihoods
         total = float(weights.sum())
         if not total > 0.0:
             self.weights = np.full(len(weights), 1.0 / len(weights))
             return
-        # This is the mean likelihood. nav2 divides it once more by the number of particles, and so reacts to their
+        # The total is the mean likelihood. nav2 divides it by the number of particles again, so its averages depend on
+        # that
         # number.
         slow, fast = self.settings.recovery_alpha_slow, self.settings.recovery_alpha_fast
         self._slow = total if self._slow == 0.0 else self._slow + slow * (total - self._slow)
@@ -105,7 +106,7 @@ class ParticleFilter:
         """Resample the particles by their weights; KLD sampling determines their number.
 
         Args:
-            anywhere: returns a given number of random particles, which are added while scans fit worse than before.
+            anywhere: returns a given number of random particles, which are added while scans match worse than before.
         """
         settings, random = self.settings, self.random
         lost = max(0.0, 1.0 - self._fast / self._slow) if self._slow > 0.0 else 0.0
@@ -122,12 +123,12 @@ class ParticleFilter:
         self._slow, self._fast = slow, fast
 
     def has_converged(self) -> bool:
-        """Return whether all particles are near their mean."""
+        """Return whether all particles are near their mean position."""
         away: NDArray[np.float64] = np.abs(self.particles[:, :2] - self.particles[:, :2].mean(axis=0))
         return bool(away.max() <= _CONVERGED)
 
     def estimate(self) -> Estimate:
-        """Return the pose of the most likely cluster."""
+        """Return the mean pose of the most likely cluster, and the covariance of all particles."""
         clusters = _clusters(self.particles)
         weights = np.bincount(clusters, self.weights)
         best = int(weights.argmax())
@@ -154,7 +155,7 @@ class ParticleFilter:
         return int(enough[0]) + 1 if len(enough) else len(drawn)
 
     def _limit(self, bins: int) -> int:
-        """Return the number of particles needed for a number of bins.
+        """Return the number of particles needed for a number of occupied bins.
 
         Source: Fox, "KLD-sampling", with the approximation of Wilson and Hilferty.
         """
@@ -167,7 +168,7 @@ class ParticleFilter:
 
 
 def _bins(particles: Poses) -> tuple[NDArray[np.int64], int]:
-    """Return the bin of each particle as a number, and the difference between neighbouring bins along x.
+    """Return the bin number of each particle, and the difference between neighbours along x.
 
     The number changes by the number of bins in a full turn per step along y, and by 1 along yaw, wrapping after a full
     turn. A border of empty bins surrounds all others.
@@ -179,13 +180,13 @@ def _bins(particles: Poses) -> tuple[NDArray[np.int64], int]:
 
 
 def _clusters(particles: Poses) -> NDArray[np.int64]:
-    """Return the cluster of each particle; adjacent bins belong to the same cluster."""
+    """Return the index of each particle's cluster; adjacent bins belong to the same cluster."""
     numbers, along_x = _bins(particles)
     bins, where = np.unique(numbers, return_inverse=True)
     yaw = bins % _TURNS
     here = np.arange(len(bins))
     pairs = []
-    for way in (along_x + _TURNS, along_x, along_x - _TURNS, _TURNS, 0):  # the opposite directions are symmetric
+    for way in (along_x + _TURNS, along_x, along_x - _TURNS, _TURNS, 0):  # The opposite directions are symmetric.
         for turn in (-1, 0, 1):
             beside = bins - yaw + way + (yaw + turn) % _TURNS
             at = np.minimum(np.searchsorted(bins, beside), len(bins) - 1)

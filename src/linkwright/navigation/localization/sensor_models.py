@@ -26,7 +26,9 @@ _FITS = 0.15
 
 @dataclass(frozen=True, slots=True)
 class BeamSkipping:
-    """Beam skipping: beams that fit only few particles, such as beams that hit people, are ignored.
+    """Settings of beam skipping, which ignores beams that fit only few particles.
+
+    Such beams are those that hit people, for example.
 
     Attributes:
         distance: the maximum distance from the map's nearest obstacle at which a beam fits a particle, in metres.
@@ -53,7 +55,7 @@ class LaserSettings:
 
 
 class MapLikelihoods:
-    """Computes the likelihood of scans on a map.
+    """The sensor models for scans on one map.
 
     Args:
         grid: an occupancy grid; cells equal to `OCCUPIED` stop beams.
@@ -70,7 +72,7 @@ class MapLikelihoods:
         distances = distance_field(occupied, grid.resolution)
         self.distances = Grid(cells=distances, resolution=grid.resolution, x=grid.x, y=grid.y, yaw=grid.yaw)
         limited = np.minimum(distances, settings.laser_likelihood_max_dist)
-        # A border of cells far from obstacles represents everything outside the map, so indices need no check.
+        # A border of cells far from obstacles represents everything outside the map, so indices need no range check.
         far = settings.laser_likelihood_max_dist
         self._distances = np.pad(limited, 1, constant_values=far).astype(np.float32)
         self._gaussian = settings.z_hit * np.exp(-0.5 * (self._distances / settings.sigma_hit) ** 2)
@@ -80,9 +82,9 @@ class MapLikelihoods:
     def likelihoods(
         self, model: str, particles: Poses, beams: Beams, skipping: BeamSkipping | None = None
     ) -> Likelihoods:
-        """Return the likelihood of each pose by one of `MODELS`, of shape (particles,).
+        """Return the likelihood of a scan from each pose by one of `MODELS`, of shape (particles,).
 
-        The result is positive, not normalised.
+        Likelihoods are positive and not normalised.
         """
         if model == "beam":
             return self._by_rays(particles, beams)
@@ -98,12 +100,12 @@ class MapLikelihoods:
         if skipping is not None:
             values = values[:, self._kept(cells, skipping)]
         exponents = values.sum(axis=1, dtype=np.float64)
-        # Relative to the best: a product of so many factors would underflow to 0.
+        # Likelihoods are relative to the best one because a product of so many factors would underflow to 0.
         likelihoods: Likelihoods = np.exp(exponents - exponents.max())
         return likelihoods
 
     def fit(self, pose: tuple[float, float, float], beams: Beams) -> float | None:
-        """Return the share of beams from a pose that end near an obstacle of the map.
+        """Return the share of beams from a pose that end near an obstacle of the map, 0 to 1.
 
         Returns None if no beam hit anything.
         """
@@ -114,14 +116,17 @@ class MapLikelihoods:
         return float((distances <= _FITS).mean())
 
     def random_poses(self, count: int, random: np.random.Generator) -> Poses:
-        """Return random poses, of shape (count, 3), uniform in the free cells, or on the whole map if none is free."""
+        """Return random poses that are uniformly distributed in the free cells, of shape (count, 3).
+
+        If no cell is free, the poses are distributed over the whole map.
+        """
         free = self._free if len(self._free) else np.argwhere(np.ones_like(self.grid.cells, np.bool_))
         cells = free[random.integers(0, len(free), count)]
         points = self.grid.centres_of(cells) + random.uniform(-0.5, 0.5, (count, 2)) * self.grid.resolution
         return np.column_stack((points, random.uniform(-np.pi, np.pi, count)))
 
     def _values(self, model: str, range_max: float) -> NDArray[np.float32]:
-        """Return the contribution of a beam for each cell in which it can end."""
+        """Return a beam's contribution to the likelihood for each cell in which the beam can end."""
         key = (model, range_max)
         if self._table is None or self._table[0] != key:
             chance = self._gaussian + self._settings.z_rand / range_max
@@ -130,9 +135,9 @@ class MapLikelihoods:
         return self._table[1]
 
     def _cells(self, particles: Poses, ends: NDArray[np.float64]) -> NDArray[np.int64]:
-        """Return the flat indices, on the map with its border, of the cells in which beams end.
+        """Return the cells in which beams end, of shape (particles, beams).
 
-        The shape is (particles, beams).
+        The cells are flat indices into the map with its border.
         """
         grid = self.grid
         c, s = np.cos(grid.yaw), np.sin(grid.yaw)

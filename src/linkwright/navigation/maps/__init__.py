@@ -1,1 +1,1 @@
-"""Map files: a YAML file with an image."""
+"""Map files: the YAML file and the image of an occupancy grid."""

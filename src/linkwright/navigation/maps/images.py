@@ -31,7 +31,7 @@ _PGM = re.compile(rb"P([25])" + rb"(?:\s|#[^\n]*\n)+(\d{1,9})" * 3 + rb"\s")
 
 @dataclass(frozen=True, slots=True)
 class MapImage:
-    """The pixels of an image from the top row down, each between 0 and 1.
+    """The pixels of an image from the top row down, with values from 0 to 1.
 
     Attributes:
         shade: the brightness, the mean of the colour channels, of shape (rows, columns).
@@ -43,7 +43,7 @@ class MapImage:
 
 
 def read_image(path: Path) -> MapImage:
-    """Read an image.
+    """Read an image file.
 
     Raises:
         LinkwrightError: NAV203, the file does not exist, is not an image, or is broken; NAV204, the file is not PGM,
@@ -61,19 +61,19 @@ def read_image(path: Path) -> MapImage:
 
 
 def pgm_bytes(pixels: NDArray[np.uint8]) -> bytes:
-    """Return grey pixels of shape (rows, columns) as a binary PGM, as ImageMagick and nav2 write it."""
+    """Encode grey pixels of shape (rows, columns) as a binary PGM, in the form that nav2 writes."""
     rows, columns = pixels.shape
     return b"P5\n%d %d\n255\n" % (columns, rows) + np.ascontiguousarray(pixels).tobytes()
 
 
 def pillow_bytes(pixels: NDArray[np.uint8], kind: str) -> bytes:
-    """Encode grey pixels as an image file in one of Pillow's formats.
+    """Encode pixels as an image file in one of Pillow's formats.
 
     The shape is (rows, columns) for grey, or (rows, columns, 2) for grey and opacity.
 
     Raises:
         LinkwrightError: NAV204, Pillow is not installed.
-        ValueError: Pillow cannot write the format, or not such pixels.
+        ValueError: Pillow cannot write the format, or not with such pixels.
     """
     image = _pillow().fromarray(pixels) if pixels.ndim == 2 else _grey_with_opacity(pixels)
     file = BytesIO()
@@ -126,7 +126,7 @@ def _by_pillow(path: Path, data: bytes) -> MapImage:
 
 def _pillow() -> Any:
     try:
-        from PIL import Image  # Imported here because Pillow is an optional extra.
+        from PIL import Image  # Import Pillow only when it is needed, because it is an optional extra.
     except ModuleNotFoundError as error:
         raise missing_extra("NAV204", error) from None
     return Image

@@ -1,4 +1,4 @@
-"""Loading and saving of maps, a YAML file with an image, as in nav2_map_server."""
+"""Loading and saving of maps as a YAML file with an image, as in nav2_map_server."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ _WITHOUT_OPACITY = ("pgm", "jpg", "jpeg", "bmp")
 
 
 def _unheard(_line: str) -> None:
-    """Ignore warnings."""
+    """Ignore a warning."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SavedAs:
-    """The settings of a saved map.
+    """The settings with which a map is saved.
 
     Attributes:
         name: the path of the files, without an extension.
@@ -62,7 +62,7 @@ def save_map(grid: Grid, saved: SavedAs, warn: Callable[[str], object] = _unhear
     Args:
         grid: the grid; its cells are per cent or unknown.
         saved: the name and settings.
-        warn: called with warnings for the user.
+        warn: called with each warning for the user.
 
     Returns:
         The paths of the image and the YAML file.

@@ -1,7 +1,7 @@
 """The YAML file of a map: image, resolution, origin, and the meaning of pixels.
 
-The keys, their meanings and the required keys are those of nav2_map_server. Errors have a line and column. Stricter
-than nav2: the resolution must be greater than 0, and thresholds must be between 0 and 1.
+The keys, their meanings and the required keys are those of nav2_map_server. Errors have a line and column. Two rules
+are stricter than nav2's: the resolution must be greater than 0, and thresholds must be between 0 and 1.
 """
 
 from __future__ import annotations
@@ -45,8 +45,8 @@ class MapYaml:
         resolution: the side of a cell, in metres.
         origin: x and y of the lower left corner in the frame of the map, in metres, and yaw, in radians.
         negate: whether white is occupied and black is free.
-        occupied_thresh: the darkness, 0 to 1, above which a pixel is occupied.
-        free_thresh: the darkness below which a pixel is free.
+        occupied_thresh: the darkness above which a pixel is occupied, 0 to 1.
+        free_thresh: the darkness below which a pixel is free, 0 to 1.
         mode: how pixels are converted to cells.
     """
 
@@ -60,7 +60,7 @@ class MapYaml:
 
 
 def read_map_yaml(path: str | Path) -> MapYaml:
-    """Read a map's YAML file; the image's path is resolved relative to it.
+    """Read a map's YAML file, and resolve the image's path relative to the file.
 
     Raises:
         LinkwrightError: NAV201, the file cannot be read; NAV202, the content is invalid.
@@ -72,7 +72,7 @@ def read_map_yaml(path: str | Path) -> MapYaml:
 
 
 class _Reader:
-    """The reader of one YAML text."""
+    """A parser of one YAML file of a map."""
 
     def __init__(self, source: SourceText) -> None:
         self._document = YamlDocument(source, "NAV202")

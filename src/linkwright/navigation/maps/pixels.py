@@ -16,7 +16,7 @@ _OPAQUE = 255
 
 
 def cells_of_image(image: MapImage, map_yaml: MapYaml) -> NDArray[np.int8]:
-    """Convert pixels to cells.
+    """Convert the pixels of an image to cells of an occupancy grid.
 
     Args:
         image: the pixels, from the top row down.
@@ -46,16 +46,16 @@ def cells_of_image(image: MapImage, map_yaml: MapYaml) -> NDArray[np.int8]:
 def pixels_of_cells(
     cells: NDArray[np.int8], mode: MapMode, occupied_thresh: float, free_thresh: float
 ) -> NDArray[np.uint8]:
-    """Convert cells to pixels, from the top row down.
+    """Convert cells of an occupancy grid to the pixels of an image, from the top row down.
 
     Args:
         cells: the cells, per cent or `UNKNOWN`, from the lowest row up.
         mode: the meaning of the pixels.
         occupied_thresh: the minimum probability of an occupied cell in the mode ``trinary``, 0 to 1.
-        free_thresh: the maximum probability of a free cell.
+        free_thresh: the maximum probability of a free cell in the mode ``trinary``, 0 to 1.
 
     Returns:
-        Grey pixels, of the shape of the cells; with ``scale`` grey and opacity, of shape (rows, columns, 2).
+        Grey pixels, of the shape of the cells; in the mode ``scale``, grey and opacity, of shape (rows, columns, 2).
     """
     turned = cells[::-1].astype(np.int16)
     known = (turned >= 0) & (turned <= 100)

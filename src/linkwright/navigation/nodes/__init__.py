@@ -1,1 +1,1 @@
-"""Navigation nodes, under the names that nav2 and slam_toolbox give them."""
+"""Navigation nodes, under their names in nav2, slam_toolbox and robot_localization."""

@@ -1,4 +1,4 @@
-"""nav2's amcl: localizes the robot on a map from laser scans and odometry.
+"""nav2's amcl, which localizes the robot on a map from laser scans and odometry.
 
 Parameters, topics, services and texts are those of nav2. Deliberate differences: the random seed is fixed, so the same
 data give the same result; a persistent mismatch of scans and map is logged; clusters of particles are continuous
@@ -54,7 +54,7 @@ class AmclNode(ManagedNode):
         self.add_post_set_parameters_callback(lambda _: self._follow())
 
     def configure(self) -> None:
-        """Read the parameters and create the topics.
+        """Read the parameters, and create the topics and the services.
 
         Raises:
             LinkwrightError: NODE433, a parameter has an invalid value.
@@ -99,7 +99,7 @@ class AmclNode(ManagedNode):
         self._active = True
 
     def deactivate(self) -> None:
-        """Stop localizing and keep the pose."""
+        """Stop localizing; the estimated pose is kept."""
         self._active = False
         self._silence.destroy()
         self._waiting.clear()
@@ -112,7 +112,7 @@ class AmclNode(ManagedNode):
     # --- input -------------------------------------------------------------------------------------------------------
 
     def update(self, message: TFMessage, *, static: bool, now_ns: int) -> None:
-        """Add new transforms, and process the scans that waited for them."""
+        """Add transforms to the buffer, and process queued scans."""
         self._buffer.update(message, static=static, now_ns=now_ns)
         if self._waiting:
             self._work()
@@ -154,9 +154,9 @@ class AmclNode(ManagedNode):
             )
 
     def _work(self) -> None:
-        """Process the scans whose transforms are known.
+        """Process the queued scans whose transforms are available.
 
-        Others wait until the transform tolerance has passed.
+        Other scans stay queued until the transform tolerance has passed.
         """
         while self._waiting:
             scan = self._waiting[0]
@@ -216,7 +216,7 @@ class AmclNode(ManagedNode):
         )
 
     def _begin_at(self, pose: Pose | None, covariance: NDArray[np.float64]) -> None:
-        """Initialise the particles around a pose, or around the origin of the map if the pose is unknown."""
+        """Initialise the particles around a pose, or around the map's origin if the pose is None."""
         self._pose, self._covariance = pose, covariance
         self._filter.begin_at(pose or (0.0, 0.0, 0.0), covariance)
         self._reset()
@@ -257,7 +257,7 @@ class AmclNode(ManagedNode):
         self._judge(estimate, beams)
 
     def _judge(self, estimate: Estimate, beams: Beams) -> None:
-        """Warn when scans have not matched the map for a while."""
+        """Warn if several consecutive scans did not match the map."""
         assert self._map is not None, "there is an estimate"
         fit = self._map.fit(estimate.pose, beams)
         if fit is None:
@@ -310,20 +310,23 @@ class AmclNode(ManagedNode):
         if not all(map(isfinite, pose)) or not np.isfinite(covariance).all():
             logger.error("Received initial pose contains NaNs or Infs! Ignoring as invalid!")
             return
-        covariance[2, :2] = covariance[:2, 2] = 0.0  # as nav2 does
+        covariance[2, :2] = covariance[:2, 2] = 0.0  # nav2 ignores these covariances, too.
         self._set_pose(self._moved_by_odometry(pose, message.header.stamp.nanoseconds), covariance)
         if not self._active:
             logger.warning("Received initial pose request, but AMCL is not yet in the active state")
 
     def _moved_by_odometry(self, pose: Pose, stamp_ns: int) -> Pose:
-        """Return an earlier pose moved by the odometry since then, as far as the odometry is known."""
+        """Return a pose of an earlier time, moved by the odometry since then.
+
+        The pose is returned unchanged if its time is 0 or the odometry is unknown.
+        """
         if not stamp_ns:
             return pose
         try:
             then, _ = self._buffer.lookup(self._settings.odom, self._settings.base, stamp_ns)
             now, _ = self._buffer.lookup(self._settings.odom, self._settings.base, 0)
         except TransformException:
-            return pose  # Without odometry the motion is unknown.
+            return pose
         return _flat(compose(_transform(pose), compose(invert(then), now)))
 
     def _set_pose(self, pose: Pose, covariance: NDArray[np.float64]) -> None:
@@ -353,13 +356,13 @@ class AmclNode(ManagedNode):
 
 
 class _Listening:
-    """The subscriptions of a listener, removed when the node is cleaned up."""
+    """A transform listener as a part that is destroyed when the node is cleaned up."""
 
     def __init__(self, listener: TransformListener) -> None:
         self._listener = listener
 
     def destroy(self) -> None:
-        """Unsubscribe."""
+        """Remove the subscriptions of the listener."""
         self._listener.unregister()
 
 

@@ -36,7 +36,7 @@ class InitialPose:
 class AmclParameters:
     """The parameters that are in neither `LaserSettings` nor `FilterSettings`.
 
-    They are in metres, radians and seconds.
+    Units are metres, radians and seconds.
     """
 
     alpha1: float = 0.2
@@ -73,7 +73,7 @@ class AmclParameters:
 
 @dataclass(frozen=True, slots=True)
 class AmclSettings:
-    """The parameters, and the objects that are made from them.
+    """The parameters, and the objects created from them.
 
     Attributes:
         given: the parameter values.
@@ -130,7 +130,8 @@ def read_parameters(node: Node) -> AmclSettings:
         odom=given.odom_frame_id.removeprefix("/"),
         world=given.global_frame_id.removeprefix("/"),
         motion=_motion(node, given.robot_model_type),
-        # alpha1: turn of turn, alpha2: turn of drive, alpha3: drive of drive, alpha4: drive of turn
+        # alpha1: rotation from rotation, alpha2: rotation from translation, alpha3: translation from translation,
+        # alpha4: translation from rotation.
         noise=Noise(given.alpha1, given.alpha2, given.alpha3, given.alpha4, given.alpha5),
         laser=laser,
         skipping=skipping,

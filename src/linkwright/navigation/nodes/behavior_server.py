@@ -1,8 +1,8 @@
 """nav2's behavior_server: spin, back up, drive on heading, wait and assisted teleoperation as actions.
 
 Source: nav2_behaviors, Humble and Jazzy. Obstacles are read from ``local_costmap/costmap_raw``, and the footprint from
-``local_costmap/published_footprint``. A deliberate difference: a moving behaviour ends when the costmap is no longer
-published.
+``local_costmap/published_footprint``. A deliberate difference: a behaviour other than wait fails when the costmap is no
+longer published.
 """
 
 from __future__ import annotations
@@ -54,12 +54,14 @@ _TYPES = {
 
 
 class _AssistedTeleop(Behavior):
-    """Drive with an operator's velocities, slowed down near obstacles, until canceled or timed out.
+    """A behaviour that drives with an operator's velocities, slowed down near obstacles.
+
+    The behaviour ends when it is canceled or times out.
 
     Args:
         allowance: the time limit in seconds; 0 for no limit.
-        seconds: how far ahead obstacles are checked, in seconds.
-        asked: the requested velocity.
+        seconds: how far ahead the motion is checked for collisions, in seconds.
+        asked: returns the requested velocity.
     """
 
     def __init__(self, allowance: float, seconds: float, asked: Callable[[], Velocity]) -> None:
@@ -83,7 +85,7 @@ class BehaviorNode(ManagedNode):
         for which in ("local", "global"):
             declare(f"{which}_costmap_topic", f"{which}_costmap/costmap_raw")
             declare(f"{which}_footprint_topic", f"{which}_costmap/published_footprint")
-        declare("costmap_topic", "local_costmap/costmap_raw")  # Humble's names of the same parameters
+        declare("costmap_topic", "local_costmap/costmap_raw")  # Humble's names of the parameters above.
         declare("footprint_topic", "local_costmap/published_footprint")
         declare("cycle_frequency", 10.0)
         declare("local_frame", self._FRAME)
@@ -175,7 +177,7 @@ class BehaviorNode(ManagedNode):
         self.begin_cycles(self._period, self._cycle)
 
     def _behavior(self, name: str, goal: Any, start: Pose) -> Behavior | str:
-        """Return the behaviour for a goal, or the reason for refusing the goal."""
+        """Return the behaviour for a goal, or the reason for which the goal is aborted."""
         if name == "wait":
             return Wait(_seconds(goal.time))
         allowance = _seconds(goal.time_allowance)
@@ -236,16 +238,16 @@ class BehaviorNode(ManagedNode):
         server.abort(code, reason, total_elapsed_time=_duration(elapsed))
 
     def _halt(self) -> None:
-        """Cancel the cycles, and stop the robot if a behaviour moved it."""
+        """End the cycles of the running behaviour, and stop the robot if the behaviour moved it."""
         self.end_cycles()
         if self._running is not None and self._running[2] != "wait":
             self._output.stop()
         self._running = None
 
-    # --- what is known of the surroundings ----------------------------------------------------------------------------
+    # --- costmap, pose and requests -----------------------------------------------------------------------------------
 
     def _blindness_reason(self) -> str:
-        """Return the reason why obstacles are unknown; empty if they are known."""
+        """Return the reason why obstacles are unknown, or an empty string if they are known."""
         if self._costmap is None or self._footprint is None:
             return "no costmap has come yet"
         if self.now_ns() - self._heard_ns > _SILENT_COSTMAP * 1e9:
@@ -258,7 +260,7 @@ class BehaviorNode(ManagedNode):
         return not bool(np.any(self._costmap.footprint_cost(poses, self._footprint) == LETHAL))
 
     def _pose(self) -> Pose | None:
-        """Return the robot's pose in the frame of the costmap."""
+        """Return the robot's pose in the frame of the costmap, or None if it is unknown."""
         frame = self._costmap_frame or self._value("local_frame")
         found = self._poses.pose(frame, self._value("robot_base_frame"), 0)
         return None if found is None else (found[0], found[1], rpy_from_quaternion(found[3:])[2])
@@ -269,7 +271,7 @@ class BehaviorNode(ManagedNode):
         self._heard_ns = self.now_ns()
 
     def _on_footprint(self, message: Any) -> None:
-        """Set the footprint from a message, transformed from the robot's pose to the robot's frame."""
+        """Store a published footprint, transformed to the robot's frame at the time of the message."""
         found = self._poses.pose(
             message.header.frame_id,
             self._value("robot_base_frame"),
@@ -288,7 +290,10 @@ class BehaviorNode(ManagedNode):
         self._asked = Velocity(twist.linear.x, twist.linear.y, twist.angular.z)
 
     def _topic(self, what: str) -> str:
-        """Return the name of a topic, from Humble's or Jazzy's parameter."""
+        """Return the name of the costmap or footprint topic.
+
+        Humble's parameter is used if it is set, else Jazzy's.
+        """
         old = str(self._value(f"{what}_topic"))
         new = str(self._value(f"local_{what}_topic"))
         return old if f"{what}_topic" in self._humble else new

@@ -1,8 +1,8 @@
-"""Bonds (bondcpp), by which nav2's servers and their manager notice when the other process dies.
+"""Bonds (bondcpp), by which nav2's servers and their manager detect that the other process died.
 
 Both sides publish heartbeats on ``bond`` with the same id. A side that leaves sends a last message; a side that dies
 stops publishing. Unlike in bondcpp, a side waits for the other without a timeout instead of 10 s, so either may start
-first. Silence is counted in the side's own heartbeats, so a process that was itself suspended does not declare the
+first. The timeout is counted in the side's own heartbeats, so a process that was itself suspended does not declare the
 other one dead.
 """
 
@@ -24,7 +24,7 @@ _DEPTH = 100
 
 
 def _nothing() -> None:
-    """Ignore the event."""
+    """Ignore an event."""
 
 
 class Bond:
@@ -33,10 +33,10 @@ class Bond:
     Args:
         node: the node that exchanges the heartbeats.
         name: the id of the bond; with nav2, the name of the managed node.
-        timeout: the seconds of silence after which the other side is considered dead.
+        timeout: the seconds without a heartbeat after which the other side is considered dead.
         period: the seconds between heartbeats.
         on_formed: called once at the first heartbeat of the other side.
-        on_broken: called once when the other side left or fell silent; not after `end`.
+        on_broken: called once when the other side leaves or is considered dead; not after `end`.
     """
 
     def __init__(
@@ -59,7 +59,7 @@ class Bond:
         self.broken = False
         self._publisher = node.create_publisher(status, TOPIC, _DEPTH)
         self._subscription = node.create_subscription(status, TOPIC, self._receive, _DEPTH)
-        self._subscription.deliver_in_batches()  # This topic carries the heartbeats of all bonds in a system.
+        self._subscription.deliver_in_batches()  # The heartbeats of all bonds in the system arrive on this topic.
         self._timer = node.create_timer(period, self._tick, clock=self._clock)
         self._send(active=True)
 

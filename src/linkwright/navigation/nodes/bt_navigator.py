@@ -1,10 +1,10 @@
-"""nav2's bt_navigator: navigates to poses with the planner, controller and behaviour servers.
+"""nav2's bt_navigator, which navigates to poses with the planner, controller and behaviour servers.
 
-It offers the actions ``navigate_to_pose`` and ``navigate_through_poses``, and subscribes to ``goal_pose`` (RViz's 2D
-Goal Pose). It behaves as nav2's default trees do (``navigate_to_pose_w_replanning_and_recovery.xml``): it plans a new
-path each second. When planning or driving fails, it clears the costmaps; if that does not help, the robot spins, waits,
-backs up and tries again, up to six times. A deliberate difference: it does not read users' behaviour trees, and logs
-this.
+The node offers the actions ``navigate_to_pose`` and ``navigate_through_poses``, and subscribes to ``goal_pose`` (RViz's
+2D Goal Pose). It behaves as nav2's default trees do (``navigate_to_pose_w_replanning_and_recovery.xml``): it plans a
+new path each second. When planning or driving fails, it clears the costmaps; if that does not help, the robot spins,
+waits, backs up and tries again, up to six times. A deliberate difference: it does not read users' behaviour trees, and
+logs this.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ class NavigatorNode(StepNode):
         self._speed = 0.0
 
     def configure(self) -> None:
-        """Create the topics and the action servers."""
+        """Create the topics, the clients and the action servers."""
         pose, odometry = get_message("geometry_msgs/msg/PoseStamped"), get_message("nav_msgs/msg/Odometry")
         self.register(self.create_subscription(pose, "goal_pose", self._on_goal_pose, _DEPTH))
         self.register(self.create_subscription(odometry, self._value("odom_topic"), self._on_odometry, _DEPTH))
@@ -114,10 +114,7 @@ class NavigatorNode(StepNode):
         self.get_logger().warning(f"behaviour trees are not supported: the default navigation runs instead of {path}")
 
     def _start(self, which: str, goal: Any) -> None:
-        """Start with a goal and abort a goal of the other action.
-
-        The robot keeps following its path meanwhile.
-        """
+        """Start navigating for a goal; a running goal of the other action is aborted."""
         poses = [goal.pose] if which == "pose" else list(goal.poses)
         at = poses[-1].pose.position
         x, y = self._pose() or (float("nan"),) * 2
@@ -129,7 +126,7 @@ class NavigatorNode(StepNode):
         self.work_on(self._servers[which], self._navigate(which))
 
     def publish_feedback(self, server: GoalServer) -> None:
-        """Publish the feedback for the goal."""
+        """Publish the robot's pose and the remaining distance and time as feedback for the goal."""
         pose = get_message("geometry_msgs/msg/PoseStamped")()
         found = self._transform()
         if found is not None:
@@ -149,10 +146,10 @@ class NavigatorNode(StepNode):
             feedback["number_of_poses_remaining"] = len(self._poses)
         server.feedback(**feedback)
 
-    # --- the work -----------------------------------------------------------------------------------------------------
+    # --- navigation ---------------------------------------------------------------------------------------------------
 
     def _navigate(self, which: str) -> Step:
-        """Navigate through the poses, and recover from failures."""
+        """Navigate to the goal's poses, and run recoveries after failures."""
         recoveries = [self._clear_costmaps, self._spin, self._wait, self._back_up]
         while True:
             try:
@@ -166,7 +163,7 @@ class NavigatorNode(StepNode):
             yield from self._recover(recoveries)
 
     def _recover(self, recoveries: Sequence[Any]) -> Step:
-        """Run recoveries in turn, as nav2's RoundRobin, until one succeeds."""
+        """Run recoveries in turn, like nav2's RoundRobin, until one succeeds."""
         for _ in recoveries:
             recovery = recoveries[self._turn % len(recoveries)]
             self._turn += 1
@@ -181,7 +178,7 @@ class NavigatorNode(StepNode):
     _turn = 0
 
     def _plan_and_drive(self, which: str) -> Step:
-        """Follow a path that is replanned periodically."""
+        """Plan a path and follow it, with periodic replanning."""
         path = yield from self._planned(which)
         driving = SentGoal(self._clients["follow_path"], self._to_follow(path))
         cleared = False
@@ -208,7 +205,7 @@ class NavigatorNode(StepNode):
             driving.cancel()
 
     def _planned(self, which: str) -> Step:
-        """Plan a path; if that fails, clear the global costmap and try once more."""
+        """Plan a path and return it; if that fails, clear the global costmap and try once more."""
         try:
             return (yield from self._plan(which))
         except StepError as failure:
@@ -238,7 +235,7 @@ class NavigatorNode(StepNode):
         return path
 
     def _refusal_reason(self) -> str:
-        """Return the reason why the global costmap prevents a goal; empty if it does not."""
+        """Return why the goal cannot be reached on the global costmap, or an empty string if it can."""
         at, frame = self._poses[-1].pose.position, self._poses[-1].header.frame_id
         if self._costmap is None or (frame and frame != self._costmap_frame):
             return ""
@@ -267,7 +264,7 @@ class NavigatorNode(StepNode):
         yield from self._clear("global")
 
     def _clear(self, which: str) -> Step:
-        """Clear a costmap if the service for it is available."""
+        """Clear a costmap if its service is available; otherwise log a warning."""
         client = self._clearing[which]
         if not client.service_is_ready():
             self.get_logger().warning(f"the {which} costmap is not cleared: there is no {client.service_name}")
@@ -311,7 +308,7 @@ class NavigatorNode(StepNode):
             self._left = _remaining_distance(self._path, *place)
 
     def _transform(self) -> Any:
-        """Return the robot's pose in the global frame; None if it is unknown."""
+        """Return the robot's pose in the global frame, or None if it is unknown."""
         try:
             return self._buffer.lookup(self._value("global_frame"), self._value("robot_base_frame"), 0)[0]
         except TransformException:
@@ -333,7 +330,7 @@ class BtNavigator(ManagedServer):
 
 
 def _is_usual(path: str) -> bool:
-    """Return whether a behaviour tree is one of nav2's defaults."""
+    """Return whether a behaviour tree has the file name of one of nav2's defaults."""
     return path.rpartition("/")[2] in _USUAL_TREES
 
 
@@ -343,9 +340,9 @@ def _length(path: Any) -> float:
 
 
 def _remaining_distance(path: Any, x: float, y: float) -> float:
-    """Return the remaining distance along a path, in metres.
+    """Return the remaining distance from a position along a path, in metres.
 
-    It is the distance from a position to the nearest pose of the path, plus the length from there to the end.
+    The distance is from the position to the nearest pose of the path, plus the length from there to the end.
     """
     places = [pose.pose.position for pose in path.poses]
     nearest = min(range(len(places)), key=lambda index: hypot(places[index].x - x, places[index].y - y))

@@ -1,10 +1,10 @@
-"""nav2's collision_monitor: slows down or stops the robot when sensors detect something in a zone.
+"""nav2's collision_monitor, which slows down or stops the robot when sensors detect something in a zone.
 
 Parameters, topics and rules are those of nav2, Humble's and Jazzy's. Deliberate differences: unless
-``enable_stamped_cmd_vel`` is set it accepts Twist and TwistStamped, and publishes the type that subscribers expect. A
-silent sensor stops the robot, unlike in Humble, and so does the loss of the commanding publisher. Sensors of the types
-``polygon`` and ``costmap`` are not supported. ``transform_tolerance`` has no effect: data whose transform is unknown
-waits.
+``enable_stamped_cmd_vel`` is set, the node accepts Twist and TwistStamped, and publishes the type that subscribers
+expect. A sensor that stops publishing stops the robot, unlike in Humble, and so does the loss of the publisher of
+commands. Sensors of the types ``polygon`` and ``costmap`` are not supported. ``transform_tolerance`` has no effect:
+data are queued until their transform is available.
 """
 
 from __future__ import annotations
@@ -43,7 +43,10 @@ _DONE = {
 
 @dataclass(frozen=True, kw_only=True)
 class MonitorParameters:
-    """The parameters that do not belong to a zone or a sensor, with nav2's names; in seconds."""
+    """The parameters that do not belong to a zone or a sensor, with nav2's names.
+
+    Times are in seconds.
+    """
 
     cmd_vel_in_topic: str = "cmd_vel_smoothed"
     cmd_vel_out_topic: str = "cmd_vel"
@@ -77,7 +80,7 @@ class MonitorNode(ManagedNode):
         """Read the zones and sensors, and create the topics.
 
         Raises:
-            LinkwrightError: NODE431, NODE433, a parameter is missing or has an invalid value.
+            LinkwrightError: NODE431, a parameter is missing; NODE433, a parameter has an invalid value.
         """
         given = self._table.values
         base, fixed = given.base_frame_id, given.odom_frame_id if given.base_shift_correction else None
@@ -145,7 +148,10 @@ class MonitorNode(ManagedNode):
         return limit_by_zones(velocity, [zone for zone in zones if zone is not None])
 
     def _publish(self, velocity: Velocity) -> None:
-        """Publish a velocity; zeros end after ``stop_pub_timeout``, so that other nodes can drive the robot."""
+        """Publish a velocity.
+
+        Zero velocities are no longer published after ``stop_pub_timeout``, so that other nodes can drive the robot.
+        """
         assert self._output is not None, "it is configured"
         now_ns = self.get_clock().now().nanoseconds
         if velocity != STILL:

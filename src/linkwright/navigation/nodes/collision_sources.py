@@ -1,4 +1,4 @@
-"""Sensors of collision_monitor: their latest points, in the robot's current frame."""
+"""Sensors of collision_monitor, whose latest points are given in the robot's current frame."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ _WAITING = 20
 
 
 class Source:
-    """A sensor and its latest message.
+    """A sensor and its recent messages.
 
     Args:
         node: the node that subscribes.
         name: the name of the sensor, the prefix of its parameters.
-        transforms: the transforms of the sensors.
+        transforms: the transforms between frames.
         base: the frame of the robot.
         fixed: the frame in which obstacles are static while the robot moves; None to ignore the robot's motion.
 
@@ -66,14 +66,14 @@ class Source:
         self._subscription.destroy()
 
     def points(self, now_ns: int, timeout: float) -> Points | None:
-        """Return the latest points; None if the sensor is silent or its transform is unknown.
+        """Return the latest points, of shape (points, 2), or None if they are missing or too old.
 
-        A sensor that is switched off has no points.
+        A disabled sensor has no points. With a timeout of 0, missing points count as no points.
 
         Args:
             now_ns: the current time.
-            timeout: the seconds of silence that are allowed, unless the sensor has its own ``source_timeout``; 0 for no
-                limit.
+            timeout: the maximum age of the points in seconds, unless the sensor has its own ``source_timeout``; 0 for
+                no limit.
         """
         if not self._value("enabled", True):
             return np.zeros((0, 2))
@@ -95,7 +95,10 @@ class Source:
         return placed[:, :2]
 
     def _newest(self) -> tuple[Any, Transform] | None:
-        """Return the latest message whose transform is known, and the transform, which often arrives later."""
+        """Return the latest message whose transform is available, and the sensor's pose.
+
+        Returns None if there is no such message. Transforms often arrive later than the messages.
+        """
         for message in reversed(self._waiting):
             pose = self._pose(message.header.frame_id, message.header.stamp.nanoseconds)
             if pose is not None:
@@ -105,7 +108,10 @@ class Source:
         return None
 
     def _pose(self, frame: str, stamp_ns: int) -> Transform | None:
-        """Return the sensor's pose at the time of a message, in the robot's current frame."""
+        """Return the sensor's pose at the time of a message, in the robot's current frame.
+
+        Returns None if a transform is not available.
+        """
         try:
             if self._fixed is None:
                 return self._transforms.lookup(self._base, frame, 0)[0]
@@ -125,9 +131,9 @@ class Source:
         return None if points is None else points[np.isfinite(points).all(axis=1)]
 
     def _of_range(self, message: Any) -> NDArray[np.float64]:
-        """Return points on the arc of a range reading.
+        """Return points on the arc of a range reading, of shape (points, 3).
 
-        There are none if the reading is outside the sensor's range.
+        If the reading is outside the limits of the sensor, no points are returned.
         """
         if not message.min_range <= message.range <= message.max_range:
             return np.zeros((0, 3))

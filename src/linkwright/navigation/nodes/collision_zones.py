@@ -1,4 +1,4 @@
-"""Zones of collision_monitor: their parameters, and shapes from topics."""
+"""Zones of collision_monitor, with shapes from parameters or topics."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Zone:
     Args:
         node: the node that has the zone's parameters.
         name: the name of the zone, the prefix of its parameters.
-        transforms: the transforms of the frames of shapes.
+        transforms: the transforms between frames.
         base: the frame of the robot.
 
     Raises:
@@ -65,14 +65,14 @@ class Zone:
             self._publisher = self._register(node.create_publisher(get_message(_POLYGON), topic, _DEPTH))
 
     def destroy(self) -> None:
-        """Remove the topics."""
+        """Destroy the publisher and the subscriptions."""
         for part in self._parts:
             part.destroy()
 
     def judging(self, velocity: Velocity, seen: Mapping[str, Points]) -> tuple[str, Rule, Shape, Points] | None:
-        """Return the zone's name, rule, shape at a velocity, and points.
+        """Return the zone's name, rule, shape at a velocity, and the points of the zone's sensors.
 
-        Returns None if it is disabled or has no shape.
+        Returns None if the zone is disabled or has no shape yet.
         """
         if not self._value("enabled", True):
             return None
@@ -88,7 +88,7 @@ class Zone:
         return self.name, self.rule, self._shape, np.concatenate(mine) if mine else np.zeros((0, 2))
 
     def publish(self) -> None:
-        """Publish the zone's polygon for displays."""
+        """Publish the zone's polygon for displays, if there are subscribers."""
         if (
             self._publisher is None
             or not isinstance(self._shape, Outline)
@@ -111,7 +111,7 @@ class Zone:
         if word not in _ACTIONS:
             raise bad_value(f"{self.name}.action_type", word, self._node.get_name(), list(_ACTIONS))
         least = int(self._value("min_points", 4))
-        if f"{self.name}.max_points" in self._node.undeclared_overrides():  # Humble's parameter
+        if f"{self.name}.max_points" in self._node.undeclared_overrides():  # Humble's parameter.
             least = int(self._value("max_points", 3)) + 1
         usual = Rule(_ACTIONS[word])
         names = [
@@ -139,7 +139,7 @@ class Zone:
         return SpeedRange(Outline(corners), (between[0], between[1]), (between[2], between[3]), direction)
 
     def _read_shape(self, kind: str) -> None:
-        """Read the shape from parameters, or subscribe to its topic."""
+        """Read the shape from parameters, or subscribe to the topic that provides it."""
         polygon = get_message(_POLYGON)
         if kind == "circle":
             radius = float(self._value("radius", 0.0))
@@ -165,9 +165,9 @@ class Zone:
             self._register(self._node.create_subscription(polygon, topic, self._on_polygon, _DEPTH))
 
     def _corners(self, name: str) -> Footprint | None:
-        """Return the corners from Jazzy's parameter (a text) or Humble's (a list of numbers).
+        """Return the corners from Jazzy's parameter (a string) or Humble's (a list of numbers).
 
-        Returns None if there are none.
+        Returns None if the parameter is not set.
         """
         full = f"{self.name}.{name}"
         if not self._node.has_parameter(full):
@@ -197,7 +197,7 @@ class Zone:
         self._place()
 
     def _place(self) -> None:
-        """Transform the corners received on a topic to the robot's current frame.
+        """Transform the polygon received on a topic to the robot's current frame.
 
         Footprints are published at the robot's pose, so they are transformed back with the transform at their stamp.
         """

@@ -1,4 +1,4 @@
-"""nav2's controller_server: follows paths for the action ``follow_path``.
+"""nav2's controller_server, which follows paths for the action ``follow_path``.
 
 Parameters, topics and results are those of nav2. Deliberate differences: unless ``enable_stamped_cmd_vel`` is set, the
 type that subscribers expect, Twist or TwistStamped, is published; the robot stops while the costmap is not current.
@@ -38,7 +38,7 @@ _STALE_PATH_FRAME = 5.0
 
 
 class _TemporarilyUnavailableError(GoalError):
-    """Raised when data is temporarily unavailable; the goal fails if that lasts."""
+    """Raised when data are temporarily unavailable; if that persists, the goal is aborted."""
 
 
 class ControllerNode(ManagedNode):
@@ -65,7 +65,7 @@ class ControllerNode(ManagedNode):
         declare("use_realtime_priority", False)
         declare("action_server_result_timeout", 10.0)
         self._stamped: bool | None = declare("enable_stamped_cmd_vel", ParameterType.BOOL).value
-        self._old_progress: str = declare("progress_checker_plugin", "").value  # Humble's parameter
+        self._old_progress: str = declare("progress_checker_plugin", "").value  # Humble's parameter.
         self._followers: dict[str, Follower] = {}
         self._goals: GoalServer | None = None
         self._measured = STILL
@@ -95,11 +95,11 @@ class ControllerNode(ManagedNode):
         self._goals = self.register(GoalServer(self, "nav2_msgs/action/FollowPath", "follow_path", self._start))
 
     def activate(self) -> None:
-        """Accept goals."""
+        """Activate the costmap, and accept goals."""
         self.costmap.trigger_activate()
 
     def deactivate(self) -> None:
-        """Stop the robot, and refuse goals."""
+        """Stop the robot, deactivate the costmap, and refuse goals."""
         if self._goals is not None and self._goals.current is not None:
             self._halt()
             self._goals.abort("UNKNOWN", "the server was deactivated")
@@ -107,7 +107,7 @@ class ControllerNode(ManagedNode):
             self.costmap.trigger_deactivate()
 
     def cleanup(self) -> None:
-        """Drop the plugins."""
+        """Drop the plugins, and clean up the costmap."""
         self.end_cycles()
         self._followers.clear()
         self._goals = None
@@ -119,7 +119,7 @@ class ControllerNode(ManagedNode):
     # --- goals --------------------------------------------------------------------------------------------------------
 
     def _start(self, goal: ServerGoalHandle) -> None:
-        """Start with a goal; a moving robot keeps moving."""
+        """Start following the path of a goal; a robot that follows a path keeps moving."""
         request = goal.request
         assert self._goals is not None, "it is configured"
         drives = self.is_cycling
@@ -157,7 +157,7 @@ class ControllerNode(ManagedNode):
         self._follower.begin()
 
     def _cycle(self) -> None:
-        """Compute and publish the next velocity."""
+        """Run one control cycle: end the goal if it was canceled, else drive."""
         goals = self._goals
         if goals is None or goals.current is None:
             self._halt()
@@ -175,7 +175,7 @@ class ControllerNode(ManagedNode):
             self._fail(failure)
 
     def _wait(self, problem: _TemporarilyUnavailableError) -> None:
-        """Stop the robot until the missing data arrives, or abort."""
+        """Stop the robot until missing data arrive, or abort the goal after a timeout."""
         self._publish(STILL)
         waited = (self.now_ns() - self._good_ns) / 1e9
         if waited > max(self._value("costmap_update_timeout"), _LONGEST_WAIT):
@@ -185,7 +185,11 @@ class ControllerNode(ManagedNode):
             self.get_logger().warning(message, throttle_duration_sec=_SECONDS_BETWEEN_COMPLAINTS)
 
     def _drive(self, goals: GoalServer) -> None:
-        """Run one cycle of path following."""
+        """Compute and publish the next velocity, or succeed if the goal is reached.
+
+        Raises:
+            GoalError: the goal must be aborted, or data are temporarily unavailable.
+        """
         now_ns = self.now_ns()
         frame = self._pose(self._path_frame, _STALE_PATH_FRAME)
         pose = self._pose(self.costmap.robot_base_frame, self.costmap.get_parameter("transform_tolerance").value)
@@ -220,7 +224,11 @@ class ControllerNode(ManagedNode):
         goals.feedback(distance_to_goal=self._path.remaining(x, y), speed=hypot(self._measured.x, self._measured.y))
 
     def _bear(self, reason: str, now_ns: int) -> None:
-        """Stop the robot when there is no valid velocity; abort after ``failure_tolerance``."""
+        """Stop the robot when there is no valid velocity.
+
+        Raises:
+            GoalError: there was no valid velocity for longer than ``failure_tolerance``.
+        """
         tolerance = self._value("failure_tolerance")
         if not tolerance:
             raise GoalError("NO_VALID_CONTROL", reason)
@@ -230,14 +238,14 @@ class ControllerNode(ManagedNode):
             raise GoalError("PATIENCE_EXCEEDED", "Controller patience exceeded")
 
     def _velocity(self) -> Velocity:
-        """Return the robot's velocity: the commanded one, or the measured one before the first command."""
+        """Return the last commanded velocity, or the measured one before the first command."""
         return self._measured if self._command is None else self._command
 
     def _pose(self, frame: str, most_seconds: float) -> Pose:
         """Return the pose of a frame in the frame of the costmap.
 
         Raises:
-            _NotNowError: the pose is unknown, or too old.
+            _TemporarilyUnavailableError: the pose is unknown, or older than `most_seconds`.
         """
         target = self.costmap.global_frame
         if not frame or frame == target:
@@ -260,7 +268,7 @@ class ControllerNode(ManagedNode):
         self._goals.abort(failure.code, str(failure))
 
     def _halt(self) -> None:
-        """Stop the robot."""
+        """End the control cycles, and stop the robot."""
         self.end_cycles()
         self._output.stop()
         self._command = None
@@ -303,7 +311,13 @@ class ControllerServer(ManagedServer):
 
 
 def _chosen(plugins: dict[str, Any], name: str, what: str, code: str) -> Any:
-    """Return the plugin that a goal names, or the only plugin if it names none."""
+    """Return the plugin that a goal names, or the only plugin if the goal names none.
+
+    `what` is the kind of plugin, for the error message.
+
+    Raises:
+        GoalError: there is no such plugin; the error has the code `code`.
+    """
     if name in plugins:
         return plugins[name]
     if not name and len(plugins) == 1:
@@ -312,7 +326,7 @@ def _chosen(plugins: dict[str, Any], name: str, what: str, code: str) -> Any:
 
 
 def _transform_poses(frame: Pose, poses: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Transform poses, of shape (poses, 3), by the pose of their frame."""
+    """Transform poses, of shape (poses, 3), from a frame with a given pose."""
     x, y, yaw = frame
     c, s = cos(yaw), sin(yaw)
     placed: NDArray[np.float64] = np.stack(
@@ -322,7 +336,7 @@ def _transform_poses(frame: Pose, poses: NDArray[np.float64]) -> NDArray[np.floa
 
 
 def _seen_from(frame: Pose, pose: Pose) -> Pose:
-    """Return a pose relative to a frame; both are given in a common frame."""
+    """Return a pose relative to a frame; both arguments are in a common frame."""
     c, s = cos(frame[2]), sin(frame[2])
     dx, dy = pose[0] - frame[0], pose[1] - frame[1]
     return c * dx + s * dy, c * dy - s * dx, pose[2] - frame[2]

@@ -1,6 +1,6 @@
 """Costmaps of nav2's servers: nodes such as ``/local_costmap/local_costmap`` in the process of a server.
 
-Source: nav2_costmap_2d ``Costmap2DROS``, Humble and Jazzy. Deliberate differences: a costmap can be activated before
+Source: nav2_costmap_2d ``Costmap2DROS``, Humble and Jazzy. A deliberate difference: a costmap can be activated before
 the robot's pose is known, and starts updating once it is known. Unsupported layers and costmap filters are skipped
 with a log line.
 """
@@ -52,7 +52,7 @@ _OF_TF = (DEFAULT_TF_TOPIC, DEFAULT_STATIC_TF_TOPIC)
 
 @dataclass(frozen=True, kw_only=True)
 class CostmapParameters:
-    """The parameters that do not belong to a layer, with nav2's names, in metres, seconds and hertz."""
+    """The parameters that do not belong to a layer, with nav2's names; units are m, s and Hz."""
 
     always_send_full_costmap: bool = False
     map_vis_z: float = 0.0
@@ -89,7 +89,7 @@ class CostmapNode(ManagedNode):
 
     def __init__(self, *arguments: Any, **named: Any) -> None:
         super().__init__(*arguments, **named)
-        self._beats = 0.0  # The bond is formed by the server to which the costmap belongs.
+        self._beats = 0.0  # A costmap needs no bond of its own because its server has one.
 
     def declare(self) -> None:
         """Declare the parameters that do not belong to a layer."""
@@ -98,12 +98,12 @@ class CostmapNode(ManagedNode):
         self._publisher: CostmapPublisher | None = None
         self._published_ns: int | None = None
         self.add_post_set_parameters_callback(self._follow)
-        self._table = ParameterTable(self, CostmapParameters)  # Added last, its callback runs first.
+        self._table = ParameterTable(self, CostmapParameters)  # Added last, so that its callback runs before `_follow`.
         self._filters: list[str] = texts_of(self, "filters", [])
         self.transforms = BufferCore(logger=self.get_logger().get_child("tf2"))
         TransformListener(self.transforms, self)
 
-    # --- what servers ask ---------------------------------------------------------------------------------------------
+    # --- queries by servers -------------------------------------------------------------------------------------------
 
     @property
     def global_frame(self) -> str:
@@ -130,34 +130,34 @@ class CostmapNode(ManagedNode):
     def costmap(self) -> Costmap:
         """The costs after the last update.
 
-        It is another object after the costmap has moved. See `layered`.
+        After the costmap has moved, this is another object. See `layered` for exceptions.
         """
         return self.layered.costmap
 
     @property
     def footprint(self) -> Footprint:
-        """The footprint with its padding, in the frame of the robot. See `layered`."""
+        """The padded footprint in the frame of the robot. See `layered` for exceptions."""
         return self.layered.footprint
 
     @property
     def uses_radius(self) -> bool:
-        """Whether the robot is treated as round."""
+        """Whether the robot is round: the parameter ``footprint`` is empty."""
         return self._given.footprint.replace(" ", "") in {"", "[]"}
 
     @property
     def is_current(self) -> bool:
-        """Whether the costmap was updated, has its map, and its sensors publish as often as expected."""
+        """Whether the costmap was updated and the data of its layers are recent enough."""
         return self._layered is not None and self._layered.is_current(self.now_ns())
 
     def robot_pose(self) -> Pose | None:
         """Return x, y (metres) and yaw (radians) of the robot in the frame of the costmap.
 
-        Returns None if they are unknown.
+        Returns None if the transform is not available.
         """
         return self.pose_of((0.0, 0.0, 0.0), self.robot_base_frame)
 
     def pose_of(self, pose: Pose, frame: str, time_ns: int = 0) -> Pose | None:
-        """Transform a pose to the frame of the costmap; None if there is no transform.
+        """Transform a pose to the frame of the costmap, or return None if no transform is available.
 
         Args:
             pose: x, y (metres) and yaw (radians).
@@ -175,14 +175,14 @@ class CostmapNode(ManagedNode):
         found = compose(transform, (x, y, 0.0, *quaternion_from_rpy((0.0, 0.0, yaw))))
         return found[0], found[1], rpy_from_quaternion(found[3:])[2]
 
-    # --- its life -----------------------------------------------------------------------------------------------------
+    # --- lifecycle ----------------------------------------------------------------------------------------------------
 
     def configure(self) -> None:
         """Create the layers, the topics and the services.
 
         Raises:
-            LinkwrightError: NODE431, NODE433, a parameter is missing or has an invalid value; NAV101, SciPy is not
-                installed.
+            LinkwrightError: NODE431, a parameter is missing; NODE433, a parameter has an invalid value; NAV101, SciPy
+                is not installed.
         """
         load_scipy("ndimage")
         footprint = self._read_footprint()
@@ -221,14 +221,17 @@ class CostmapNode(ManagedNode):
         self.end_cycles()
 
     def cleanup(self) -> None:
-        """Remove the subscriptions of the layers."""
+        """Drop the layers, and remove their subscriptions."""
         self.end_cycles()
         for topic in self._shared.topics if self._shared is not None else []:
             topic.destroy()
         self._shared = self._layered = self._publisher = None
 
     def update(self) -> bool:
-        """Update the costmap; return False if the robot's pose is unknown."""
+        """Process queued sensor data, and update the costmap.
+
+        Returns False, without an update, if the robot's pose is unknown.
+        """
         assert self._shared is not None, "it is configured"
         pose = self.robot_pose()
         if pose is None:
@@ -241,7 +244,7 @@ class CostmapNode(ManagedNode):
         self._publish_footprint(pose)
         return True
 
-    # --- inside -------------------------------------------------------------------------------------------------------
+    # --- updates ------------------------------------------------------------------------------------------------------
 
     @property
     def _given(self) -> CostmapParameters:
@@ -295,7 +298,7 @@ class CostmapNode(ManagedNode):
         self._footprints.publish(message)
 
     def _on_map(self, grid: Grid, frame: str) -> None:
-        """Resize a static costmap to its map."""
+        """Resize the costmap to a new map, unless the costmap moves with the robot."""
         self.get_logger().info(
             f"StaticLayer: Resizing costmap to {grid.columns} X {grid.rows} at {grid.resolution:g} m/pix"
         )
@@ -323,7 +326,7 @@ class CostmapNode(ManagedNode):
         self.layered.footprint = corners
 
     def _follow(self, changed: list[Parameter]) -> None:
-        """Apply changed parameters to the active node."""
+        """Apply changed parameters to the configured node."""
         layered = self._layered
         if layered is None or self._shared is None:
             return
@@ -389,16 +392,16 @@ class CostmapNode(ManagedNode):
 
 
 def make_costmap(server: Node, graph: Graph, options: NodeOptions, name: str) -> CostmapNode:
-    """Create the costmap of a server, in a sub-namespace of the server's namespace with the costmap's name.
+    """Create the costmap of a server, in a sub-namespace with the costmap's name.
 
     Args:
         server: the server; its ``use_sim_time`` also applies to the costmap.
         graph: the graph to which the costmap's node is added.
-        options: the options of the server; the costmap's parameters are taken from the same process.
+        options: the options of the server, which include the costmap's parameters.
         name: ``local_costmap`` or ``global_costmap``.
 
     Raises:
-        LinkwrightError: a parameter has another type.
+        LinkwrightError: a parameter has the wrong type.
     """
     ros = parse(options.arguments)
     rules = ParameterRules()
@@ -419,11 +422,11 @@ def make_costmap(server: Node, graph: Graph, options: NodeOptions, name: str) ->
 
 
 def _for_tf(server: Node, rule: tuple[str, str]) -> tuple[str, str]:
-    """Return remapping rules with which the costmap uses the server's tf topics.
+    """Return the remapping rule for the costmap that corresponds to one of the server.
 
-    Without them it would use the tf topics of its own namespace.
+    A relative tf topic is resolved in the server's namespace.
 
-    Source: in nav2, a costmap listens with a node of its process that is not in the costmap's namespace.
+    Source: in nav2, a costmap listens to transforms with a node of its process that is not in the costmap's namespace.
     """
     source, target = rule
     if source not in _OF_TF or target.startswith("/"):
@@ -432,7 +435,10 @@ def _for_tf(server: Node, rule: tuple[str, str]) -> tuple[str, str]:
 
 
 def _upright(grid: Grid) -> Grid:
-    """Return the size and origin of the smallest axis-aligned grid around another grid."""
+    """Return the smallest axis-aligned grid that contains another grid.
+
+    Only the size and origin of the result are meaningful.
+    """
     if not grid.yaw:
         return grid
     rows, columns = grid.rows, grid.columns

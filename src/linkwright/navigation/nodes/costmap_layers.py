@@ -44,7 +44,7 @@ class Surroundings:
         node: the node of the costmap.
         transforms: the transforms between frames.
         frame: the frame of the costmap.
-        on_map: called by the static layer with a map and its frame.
+        on_map: called with each full map of the static layer and the map's frame.
         topics: the topics of the layers, which are destroyed with the costmap.
         sensors: the topics whose messages are processed when the costmap is updated.
         layers: the layers by name, from the bottom to the top.
@@ -64,9 +64,9 @@ class Surroundings:
 
 
 def make_layers(shared: Surroundings, names: list[str]) -> None:
-    """Create the layers listed in the parameter ``plugins``.
+    """Create the layers that the parameter ``plugins`` names.
 
-    Unknown layers are skipped with a warning.
+    Layers of unknown types are skipped with a warning.
 
     Raises:
         LinkwrightError: NODE431, a layer has no type; NODE433, a parameter has an invalid value.
@@ -106,7 +106,7 @@ def make_layers(shared: Surroundings, names: list[str]) -> None:
 
 
 def follow(shared: Surroundings, changed: list[Parameter]) -> bool:
-    """Apply changed parameters of layers, and return whether there were any."""
+    """Apply changed parameters to the layers, and return whether any belongs to a layer."""
     found = False
     for changed_parameter in changed:
         name, _, parameter = changed_parameter.name.partition(".")

@@ -1,4 +1,4 @@
-"""Publication of costmaps: as occupancy grids for displays, and raw for other nodes.
+"""Publication of costmaps, as occupancy grids for displays and as raw costs for other nodes.
 
 Source: nav2_costmap_2d ``Costmap2DPublisher``.
 """
@@ -47,7 +47,10 @@ def raw_message(costmap: Costmap, frame: str, stamp: Any) -> Any:
 
 
 class CostmapPublisher:
-    """Publishes a costmap on ``costmap`` and ``costmap_raw``, and its changes on ``costmap_updates``.
+    """The publishers of a costmap.
+
+    The whole costmap is published on ``costmap`` and ``costmap_raw``, and changes on ``costmap_updates`` (since Iron,
+    also on ``costmap_raw_updates``).
 
     Args:
         node: the node of the costmap.
@@ -73,17 +76,20 @@ class CostmapPublisher:
             )
 
     def destroy(self) -> None:
-        """Remove the topics."""
+        """Destroy the publishers."""
         for publisher in (self._full, self._raw, self._updates, self._raw_updates):
             if publisher is not None:
                 publisher.destroy()
 
     def note(self, window: Window) -> None:
-        """Record a changed window."""
+        """Add a changed window to the changes that the next `publish` sends."""
         self._pending = self._pending.joined(window)
 
     def publish(self) -> None:
-        """Publish the changes; the whole costmap to new subscribers and after it moved."""
+        """Publish the recorded changes.
+
+        The whole costmap is published if it moved or was resized, or if there are new subscribers.
+        """
         grid = self._costmap.costmap.grid
         place = (grid.x, grid.y, grid.rows, grid.columns)
         listeners = self._full.get_subscription_count() + self._raw.get_subscription_count()
@@ -109,7 +115,7 @@ class CostmapPublisher:
             self._publish_raw(window, stamp)
 
     def _publish_raw(self, window: Window, stamp: Any) -> None:
-        """Publish the whole raw costmap for subscribers without updates, and the changes."""
+        """Publish the whole costmap on ``costmap_raw``, and the changes on ``costmap_raw_updates``."""
         if self._raw.get_subscription_count():
             self._raw.publish(raw_message(self._costmap.costmap, self._frame, stamp))
         if self._raw_updates is not None and self._raw_updates.get_subscription_count() and not window.is_empty:

@@ -11,7 +11,7 @@ from linkwright.navigation.grids.grid import Grid
 
 
 def costmap_of(message: Any) -> Costmap:
-    """Convert a message to a costmap."""
+    """Convert a nav2_msgs/Costmap to a costmap."""
     metadata = message.metadata
     cells = np.frombuffer(message.data, np.uint8).reshape(metadata.size_y, metadata.size_x)
     origin = metadata.origin.position

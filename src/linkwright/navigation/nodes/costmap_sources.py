@@ -1,8 +1,8 @@
 """Subscriptions of a costmap's layers: laser scans, point clouds, ranges and maps.
 
-Source: nav2_costmap_2d ``ObservationBuffer``, ``StaticLayer``. Messages wait until their transform is known, and are
-processed when the costmap is updated. If a sensor's points do not persist, only its last message with a known
-transform is used.
+Source: nav2_costmap_2d ``ObservationBuffer``, ``StaticLayer``. Messages are queued until their transform is available,
+and are processed when the costmap is updated. If a sensor's points do not persist, only its last message with an
+available transform is used.
 """
 
 from __future__ import annotations
@@ -45,13 +45,13 @@ _LITTLE = 1e-4
 
 
 class SensorTopic(ABC):
-    """A topic of a sensor, whose messages wait until their transforms are known.
+    """The subscription to a sensor's topic, with a queue of messages.
 
     Args:
         node: the node that subscribes.
         topic: the name of the topic.
-        kind: the type of its messages, in sensor_msgs.
-        transforms: the transforms of the sensors.
+        kind: the message type, without the package sensor_msgs.
+        transforms: the transforms between frames.
         frame: the frame of the costmap.
     """
 
@@ -66,7 +66,10 @@ class SensorTopic(ABC):
         self._subscription.destroy()
 
     def process(self) -> None:
-        """Pass the messages whose transforms are known to the layer."""
+        """Pass the queued messages whose transforms are available to the layer.
+
+        Messages that are older than the last of these are dropped.
+        """
         waiting = list(self._waiting)
         placed = [(message, pose) for message in waiting if (pose := self._pose(message)) is not None]
         if not placed:
@@ -98,16 +101,16 @@ class SensorTopic(ABC):
 
 
 class PointsTopic(SensorTopic):
-    """A topic of scans or point clouds, for an obstacle layer.
+    """The subscription to scans or point clouds, for an obstacle layer.
 
     Args:
         node: the node that subscribes.
         topic: the name of the topic.
         kind: ``LaserScan`` or ``PointCloud2``.
         buffer: receives the observations.
-        transforms: the transforms of the sensors.
+        transforms: the transforms between frames.
         frame: the frame of the costmap.
-        sensor_frame: the frame of the sensor; empty to use the frame of its messages.
+        sensor_frame: the frame of the sensor; empty to use the frame of the messages.
         inf_is_valid: whether a ray without a return clears its full length.
     """
 
@@ -131,7 +134,7 @@ class PointsTopic(SensorTopic):
 
     @property
     def all_count(self) -> bool:
-        """Whether points persist."""
+        """Whether observations persist, so that every message is used."""
         return bool(self.buffer.source.observation_persistence)
 
     def _observe(self, message: Any, pose: Transform) -> None:
@@ -157,7 +160,7 @@ class PointsTopic(SensorTopic):
 
 
 class RangeTopic(SensorTopic):
-    """A topic of ranges, for a range layer."""
+    """The subscription to ranges, for a range layer."""
 
     def __init__(self, node: Node, topic: str, layer: RangeLayer, transforms: BufferCore, frame: str) -> None:
         super().__init__(node, topic, "Range", transforms, frame)
@@ -165,13 +168,13 @@ class RangeTopic(SensorTopic):
 
     @property
     def all_count(self) -> bool:
-        """Always true: every message updates the probabilities."""
+        """Always True, because every message updates the probabilities."""
         return True
 
     def _observe(self, message: Any, pose: Transform) -> None:
         least, most, distance = message.min_range, message.max_range, message.range
         free = self._layer.settings.clear_on_max_reading
-        if least == most:  # A sensor with equal limits only detects presence.
+        if least == most:  # A sensor with equal limits only detects presence: -inf is an object, inf is none.
             if not np.isinf(distance) or (distance > 0.0 and not free):
                 return
             free, distance = distance > 0.0, least
@@ -187,7 +190,7 @@ class RangeTopic(SensorTopic):
 
 
 class MapTopic:
-    """The topic of a map, for a static layer.
+    """The subscription to a map, for a static layer.
 
     Args:
         node: the node that subscribes.

@@ -38,10 +38,10 @@ USUAL_PROGRESS_CHECKERS = {"progress_checker": "nav2_controller/SimpleProgressCh
 
 
 def make_follower(node: Node, plugin: str) -> Follower:
-    """Create the follower of a plugin.
+    """Create the path follower of a plugin.
 
     Raises:
-        LinkwrightError: NODE431, its type is not set; a parameter has another type.
+        LinkwrightError: NODE431, the plugin's type is not set; GRAPH201, a parameter has the wrong type.
     """
     kind = type_of(node, plugin, USUAL_FOLLOWERS)
     logger = node.get_logger()
@@ -79,7 +79,7 @@ def _made(node: Node, plugin: str, kind: str) -> Follower:
 
 
 def _dwb(node: Node, plugin: str) -> SamplingParameters:
-    """Return the settings for DWB: its limits and simulated time, with its defaults."""
+    """Return the sampling settings with DWB's limits, simulated time and defaults."""
 
     def value(name: str, default: float) -> float:
         return float(value_of(node, f"{plugin}.{name}", default))
@@ -96,7 +96,7 @@ def _dwb(node: Node, plugin: str) -> SamplingParameters:
 
 
 def _mppi(node: Node, plugin: str) -> SamplingParameters:
-    """Return the settings for MPPI: its limits and simulated time, with its defaults."""
+    """Return the sampling settings with MPPI's limits, simulated time and defaults."""
 
     def value(name: str, default: float) -> float:
         return float(value_of(node, f"{plugin}.{name}", default))

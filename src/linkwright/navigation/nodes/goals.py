@@ -1,4 +1,4 @@
-"""Action servers with one goal at a time: a new goal replaces the previous one, as in nav2's servers."""
+"""Action servers with one goal at a time; a new goal replaces the previous one, as in nav2's servers."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from linkwright.navigation.nodes.managed import ManagedNode
 
 
 class GoalError(Exception):
-    """Raised when a goal cannot be reached; the text gives the reason.
+    """Raised when a goal cannot be reached; the message gives the reason.
 
     Attributes:
         code: the name of nav2's error code.
@@ -24,19 +24,19 @@ class GoalError(Exception):
 
 
 class GoalServer:
-    """The action server of a managed node, which refuses goals while the node is not active.
+    """The action server of a managed node, which rejects goals while the node is not active.
 
-    The code that works on the goal must check `is_canceled` regularly, and then call `canceled`.
+    The code that executes the goal must check `is_canceled` regularly, and then call `canceled`.
 
     Args:
-        node: the owner of the server.
+        node: the node that offers the action.
         kind: the type of the action.
         name: the name of the action.
         begin: called with each accepted goal, after the previous one was aborted.
         may_begin: returns whether to accept a goal; by default every goal is accepted.
 
     Attributes:
-        current: the active goal.
+        current: the active goal; None if there is none.
     """
 
     def __init__(
@@ -65,7 +65,7 @@ class GoalServer:
 
     @property
     def goal(self) -> Any:
-        """The message of the active goal."""
+        """The goal message of the active goal."""
         assert self.current is not None, "something is worked on"
         return self.current.request
 
@@ -75,7 +75,7 @@ class GoalServer:
         return self.current is not None and self.current.is_cancel_requested
 
     def feedback(self, **fields: Any) -> None:
-        """Publish feedback with these fields."""
+        """Publish feedback with the given fields for the active goal; do nothing if there is none."""
         if self.current is not None:
             message = self._type.Feedback()
             for name, value in fields.items():
@@ -83,12 +83,12 @@ class GoalServer:
             self.current.publish_feedback(message)
 
     def succeed(self, **fields: Any) -> None:
-        """End the goal with the status succeeded and these fields of the result."""
+        """End the active goal with the status succeeded and the given fields of the result."""
         if (goal := self._leave()) is not None:
             goal.succeed(self._result("", "", fields))
 
     def abort(self, code: str, reason: str, **fields: Any) -> None:
-        """End the goal with the status aborted.
+        """End the active goal with the status aborted.
 
         Args:
             code: the name of the error code, for results that have one (Jazzy).
@@ -99,7 +99,7 @@ class GoalServer:
             goal.abort(self._result(code, reason, fields))
 
     def canceled(self, **fields: Any) -> None:
-        """End the goal with the status canceled."""
+        """End the active goal with the status canceled, or aborted if no cancellation was requested."""
         if (goal := self._leave()) is not None:
             if goal.is_cancel_requested:
                 goal.canceled(self._result("", "", fields))
@@ -107,7 +107,7 @@ class GoalServer:
                 goal.abort(self._result("", "", fields))
 
     def destroy(self) -> None:
-        """Remove the server from the graph; an active goal is aborted."""
+        """Abort the active goal, and destroy the action server."""
         self.abort("UNKNOWN", "the server ends")
         self._server.destroy()
 
@@ -139,4 +139,4 @@ class GoalServer:
 
 
 def _never(_goal: ServerGoalHandle) -> None:
-    """Do nothing: goals are executed by timers, not by this callback."""
+    """Do nothing, because goals are executed by timers instead of this callback."""

@@ -1,4 +1,4 @@
-"""nav2's lifecycle_manager: configures and activates managed nodes in order, and stops all when one dies.
+"""nav2's lifecycle_manager, which configures and activates managed nodes in order, and resets them if one dies.
 
 Services, parameters, order and log lines are those of nav2. Deliberate differences: the manager waits for an answer as
 long as the node exists, with a log line each ``service_timeout``, so that a slow machine does not cause a failure; and
@@ -26,7 +26,7 @@ _ONE_SECOND = 1.0
 
 
 class _Step(Enum):
-    """A transition: its number, the preceding log line, and the resulting state."""
+    """A transition, with its ID, the log line that precedes it, and the resulting state."""
 
     CONFIGURE = (1, "Configuring", INACTIVE)
     CLEANUP = (2, "Cleaning up", UNCONFIGURED)
@@ -78,29 +78,35 @@ class _ManagedNodeClient:
         self._asking = node.create_client(self._get, f"{name}/get_state")
 
     def is_there(self) -> bool:
-        """Return whether the services of the managed node exist."""
+        """Return whether the lifecycle services of the managed node are available."""
         return bool(self._changing.service_is_ready() and self._asking.service_is_ready())
 
     async def wait(self, look_again: float) -> None:
-        """Wait until the services of the managed node exist, with a log line every few seconds."""
+        """Wait until the lifecycle services of the managed node are available.
+
+        A line is logged every `look_again` seconds.
+        """
         for client in (self._changing, self._asking):
             while not await wait_for_service(self._node, client, look_again):
                 self._node.get_logger().info(f"Waiting for service {client.service_name}...")
 
     async def change(self, step: _Step, word_each: float) -> bool:
-        """Run a transition, and return whether it succeeded; it fails if the node leaves meanwhile."""
+        """Run a transition, and return whether the node reached the resulting state.
+
+        The transition fails if the node disappears meanwhile. A line is logged every `word_each` seconds.
+        """
         request = self._change.Request()
         request.transition.id = step.number
         answer = await self._answer(self._changing, request, word_each)
         return bool(answer is not None and answer.success) and await self.state(word_each) == step.goal.state_id
 
     async def state(self, word_each: float) -> int | None:
-        """Return the ID of the node's state; None if the node is missing."""
+        """Return the ID of the node's lifecycle state, or None if the node is missing."""
         answer = await self._answer(self._asking, self._get.Request(), word_each)
         return None if answer is None else int(answer.current_state.id)
 
     async def answers(self, seconds: float) -> bool:
-        """Return whether the node reports within some seconds that it is unconfigured."""
+        """Return whether the node reports within `seconds` that it is unconfigured."""
         if not self.is_there():
             return False
         future = self._asking.call_async(self._get.Request())
@@ -111,7 +117,7 @@ class _ManagedNodeClient:
         return False
 
     def end_bond(self) -> None:
-        """End the bond with the managed node."""
+        """End the bond with the managed node, if there is one."""
         if self.bond is not None:
             self.bond.end()
             self.bond = None
@@ -132,7 +138,7 @@ class LifecycleManager(SingleNode):
     """The running lifecycle_manager node.
 
     Raises:
-        LinkwrightError: NODE433, ``node_names`` is not a list of names.
+        LinkwrightError: NODE433, ``node_names`` is empty, or contains an empty name or the same name twice.
     """
 
     DEFAULT_NAME = "lifecycle_manager"
@@ -149,7 +155,7 @@ class LifecycleManager(SingleNode):
         self._tasks: set[asyncio.Task[Any]] = set()
         self._logger.info("Creating and initializing lifecycle service clients")
         self._managed = [_ManagedNodeClient(self._node, name) for name in self._names]
-        group = ReentrantCallbackGroup()  # A command takes long, and ``is_active`` must be answered meanwhile.
+        group = ReentrantCallbackGroup()  # ``is_active`` must be answered while a long command runs.
         name = self._node.get_name()
         for kind, service, answer in (
             ("nav2_msgs/srv/ManageLifecycleNodes", "manage_nodes", self._on_manage),
@@ -267,7 +273,15 @@ class LifecycleManager(SingleNode):
     async def _transition_all(
         self, step: _Step, *, whatever_happens: bool = False, without: _ManagedNodeClient | None = None
     ) -> bool:
-        """Run a transition of all nodes, in reverse order for shutting down."""
+        """Run a transition of all nodes, and return whether all succeeded.
+
+        Nodes are configured and activated in order, and taken down in reverse order.
+
+        Args:
+            step: the transition.
+            whatever_happens: whether to continue after a failure.
+            without: a node that is skipped.
+        """
         upwards = step in (_Step.CONFIGURE, _Step.ACTIVATE)
         for managed in self._managed if upwards else reversed(self._managed):
             if managed is not without and not await self._one(managed, step, wait=upwards) and not whatever_happens:
@@ -314,9 +328,9 @@ class LifecycleManager(SingleNode):
         self._begin(self._run_exclusively(lambda: self._bring_down(managed)))
 
     async def _bring_down(self, dead: _ManagedNodeClient) -> bool:
-        """Take the other nodes down after one died, and bring all up when it returns."""
+        """Reset the other nodes after one died, and start to wait for its return."""
         if dead.bond is None:
-            return True  # It left with another node, or on command.
+            return True  # The node was taken down with another one, or by a command.
         if self._state not in (_State.ACTIVE, _State.UNKNOWN):
             return True
         self._logger.info(f"Have not received a heartbeat from {dead.name}.")
@@ -334,7 +348,10 @@ class LifecycleManager(SingleNode):
         return True
 
     async def _reconnect(self) -> None:
-        """Wait until all nodes are back, and start them."""
+        """Wait until all nodes are available again, and start them.
+
+        The wait ends after ``bond_respawn_max_duration``, or when a command changes the nodes.
+        """
         waited = 0.0
         while waited < self._respawn_most and self._stays_down():
             await wait_for_future(self._node, asyncio.get_running_loop().create_future(), _ONE_SECOND)
@@ -348,7 +365,7 @@ class LifecycleManager(SingleNode):
             self._logger.info("Failed to re-establish connection from a server crash after maximum timeout.")
 
     def _stays_down(self) -> bool:
-        """Return whether no command was received since the nodes were taken down."""
+        """Return whether no command has changed the nodes since they were taken down."""
         return self._state is _State.UNCONFIGURED
 
     def _begin(self, work: Coroutine[Any, Any, Any]) -> None:

@@ -27,8 +27,8 @@ class ManagedNode(LifecycleNodeMixin, Node):
     """A server of nav2 as a managed node.
 
     Derived classes declare their parameters in `declare` and do their work in `configure`, `activate`, `deactivate`
-    and `cleanup`. A `LinkwrightError` raised there is logged, and the transition fails. Parts passed to `register` are
-    destroyed when the node is cleaned up.
+    and `cleanup`. A `LinkwrightError` raised in `configure` or `activate` is logged, and the transition fails. Parts
+    passed to `register` are destroyed when the node is cleaned up.
     """
 
     def __init__(self, *arguments: Any, **named: Any) -> None:
@@ -44,7 +44,7 @@ class ManagedNode(LifecycleNodeMixin, Node):
         self.declare()
 
     def declare(self) -> None:
-        """Declare the parameters; `configure` may declare others."""
+        """Declare the parameters; `configure` may declare more."""
 
     def configure(self) -> None:
         """Read the parameters, and create the topics."""
@@ -56,7 +56,7 @@ class ManagedNode(LifecycleNodeMixin, Node):
         """Stop working."""
 
     def cleanup(self) -> None:
-        """Drop the parts that `configure` created without `register`, even if it failed halfway."""
+        """Drop the parts that are not registered; `configure` may have failed halfway."""
 
     def register(self, part: P) -> P:
         """Register a part that is destroyed when the node is cleaned up, and return it."""
@@ -78,12 +78,15 @@ class ManagedNode(LifecycleNodeMixin, Node):
         return self._timer is not None
 
     def begin_cycles(self, period: float, cycle: Callable[[], object]) -> None:
-        """Call a function every `period` seconds of the node's clock, replacing any earlier one."""
+        """Call a function every `period` seconds of the node's clock.
+
+        Earlier calls are stopped.
+        """
         self.end_cycles()
         self._timer = self.create_timer(period, cycle)
 
     def end_cycles(self) -> None:
-        """Stop the calls started by `begin_cycles`; does nothing if there are none."""
+        """Stop the calls started by `begin_cycles`, if there are any."""
         if self._timer is not None:
             self._timer.destroy()
             self._timer = None
@@ -94,7 +97,7 @@ class ManagedNode(LifecycleNodeMixin, Node):
             self.trigger_activate()
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Run `configure`; unknown parameters are logged once."""
+        """Run `configure`; the first success logs unknown parameters."""
         self.get_logger().info("Configuring")
         try:
             self.configure()
@@ -130,7 +133,7 @@ class ManagedNode(LifecycleNodeMixin, Node):
         return super().on_deactivate(state)
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Run `cleanup`."""
+        """Run `cleanup` and destroy the registered parts."""
         self.get_logger().info("Cleaning up")
         self._let_go()
         return super().on_cleanup(state)
@@ -151,7 +154,7 @@ class ManagedNode(LifecycleNodeMixin, Node):
         return super().on_error(state)
 
     def leave(self) -> None:
-        """Stop working and notify the manager; called before the node is destroyed."""
+        """Stop working, break the bond and clean up, before the node is destroyed."""
         if self.is_active:
             self.deactivate()
         self._end_bond()
@@ -175,7 +178,7 @@ class ManagedNode(LifecycleNodeMixin, Node):
 
 
 class ManagedServer(SingleNode):
-    """A running node of one of nav2's servers.
+    """The base class of running nodes of nav2's servers.
 
     Attributes:
         NODE: the class of the node.

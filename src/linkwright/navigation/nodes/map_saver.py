@@ -1,6 +1,6 @@
-"""nav2's map_saver, which saves the map of a topic.
+"""nav2's map_saver, which saves a map received on a topic.
 
-map_saver_cli saves it once, map_saver_server on request by a service.
+map_saver_cli saves one map and exits; map_saver_server saves maps on request by a service.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ _INVALID = 255
 
 
 class _Saving:
-    """The base of both programs: waits for the map of a topic and saves it."""
+    """The code shared by both programs, which receives a map and saves it."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
@@ -52,7 +52,7 @@ class _Saving:
         self._latched: bool = declare("map_subscribe_transient_local", True).value
 
     def mode(self, text: str) -> MapMode:
-        """Return the mode with a name; ``trinary`` for an unknown name."""
+        """Return the mode with a name, or ``trinary`` with a warning if the name is unknown."""
         try:
             return MapMode(text or MapMode.TRINARY.value)
         except ValueError:
@@ -62,9 +62,9 @@ class _Saving:
             return MapMode.TRINARY
 
     async def save(self, topic: str, name: str, kind: str, mode: MapMode, free: float, occupied: float) -> bool:
-        """Save the map of a topic, and return whether that succeeded.
+        """Save the next map of a topic, and return whether that succeeded.
 
-        A threshold of 0 selects the parameter's value.
+        A threshold of 0 selects the default from the parameters.
         """
         logger = self._node.get_logger()
         logger.info(f"Saving map from '{topic}' topic to '{name}' file")
@@ -93,7 +93,7 @@ class _Saving:
         return True
 
     def _write(self, message: Any, saved: SavedAs, io: Logger) -> str | None:
-        """Save a map; return the reason if that failed, else None."""
+        """Save the map of a message, and return None, or the reason for a failure."""
         try:
             grid = grid_of(message)
             io.info(f"Received a {grid.columns} X {grid.rows} map @ {grid.resolution:g} m/pix")
@@ -106,7 +106,7 @@ class _Saving:
         return None
 
     async def _map_of(self, topic: str) -> Any:
-        """Return the next message; log a line and return None if none arrives in time."""
+        """Return the next message of a topic, or None with a log line if none arrives in time."""
         node = self._node
         come: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
 
@@ -115,7 +115,7 @@ class _Saving:
                 come.set_result(message)
 
         qos = LATCHED_QOS if self._latched else QoSProfile(depth=10)
-        group = ReentrantCallbackGroup()  # The service callback that waits for the map occupies the node's own group.
+        group = ReentrantCallbackGroup()  # The waiting service callback occupies the node's own group.
         kind = get_message("nav_msgs/msg/OccupancyGrid")
         subscription = node.create_subscription(kind, topic, receive, qos, callback_group=group)
         try:
@@ -138,7 +138,7 @@ class _Saving:
 class MapSaver(SingleNode):
     """The running map_saver_cli node.
 
-    It exits with status 0 if the map was saved, 1 if not, and 255 for an unknown argument.
+    The exit status is 0 if the map was saved, 1 if not, and 255 for an invalid argument.
     """
 
     DEFAULT_NAME = "map_saver"
@@ -164,7 +164,7 @@ class MapSaver(SingleNode):
         self._task = asyncio.get_running_loop().create_task(self._run(saving, arguments))
 
     def close(self) -> None:
-        """Close the node."""
+        """Cancel a running save, and close the node."""
         if self._task is not None:
             self._task.cancel()
         super().close()
@@ -180,7 +180,7 @@ class MapSaver(SingleNode):
 
 
 def _parsed(words: list[str]) -> dict[str, str]:
-    """Parse the options of a command line.
+    """Parse the command-line options, and return their values by option.
 
     Raises:
         ValueError: an option is unknown, has no value, or has a value that is not a number where one is required.
@@ -210,7 +210,7 @@ class MapSaverNode(ManagedNode):
         self._saving = _Saving(self)
 
     def configure(self) -> None:
-        """Create the service."""
+        """Create the service ``save_map``."""
         name = f"{self.get_name()}/save_map"
         self.register(self.create_service(get_service("nav2_msgs/srv/SaveMap"), name, self._on_save))
 
@@ -228,7 +228,7 @@ class MapSaverNode(ManagedNode):
 
 
 def _decimal(value: float) -> float:
-    """Return the shortest decimal number for a float32: 0.65 arrives as 0.649999976."""
+    """Round a float32 value to the decimal number that was sent: 0.649999976 to 0.65."""
     return round(value, 6)
 
 

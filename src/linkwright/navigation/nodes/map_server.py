@@ -1,4 +1,4 @@
-"""nav2's map_server: publishes a map loaded from files, and returns it by a service.
+"""nav2's map_server, which publishes a map loaded from files, and returns it by a service.
 
 One difference from nav2's Humble: without ``yaml_filename`` the node can still be configured (as in Jazzy), and serves
 a map once one is loaded.

@@ -26,7 +26,10 @@ def path_message(poses: NDArray[np.float64], frame: str, stamp: Any) -> Any:
 
 
 def poses_of(stamped: Any) -> NDArray[np.float64]:
-    """Convert geometry_msgs/PoseStamped messages to x, y (metres) and yaw (radians), of shape (n, 3)."""
+    """Convert a list of geometry_msgs/PoseStamped to planar poses, of shape (n, 3).
+
+    Poses are x, y (metres) and yaw (radians).
+    """
     return np.array([pose_of(pose) for pose in stamped], np.float64).reshape(-1, 3)
 
 

@@ -1,8 +1,8 @@
-"""nav2's planner_server: plans paths for ``compute_path_to_pose`` and ``compute_path_through_poses``.
+"""nav2's planner_server, which plans paths for ``compute_path_to_pose`` and ``compute_path_through_poses``.
 
-Parameters, topics, texts and results are those of nav2, Humble and Jazzy. All types of planners are accepted, but one
-method plans for all of them (`linkwright.navigation.planning.planner`); a line is logged if the type has another
-method. A deliberate difference: a goal in an obstacle is refused however large the tolerance is.
+Parameters, topics, texts and results are those of nav2, Humble and Jazzy. All types of planners are accepted, but they
+share one method (`linkwright.navigation.planning.planner`); a line is logged for types that have another method in
+nav2. A deliberate difference: a goal in an obstacle is refused however large the tolerance is.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ class PlannerNode(ManagedNode):
         self._work: dict[str, SlicedWork] = {}
 
     def configure(self) -> None:
-        """Create the planners, the costmap and the action servers.
+        """Create the planners, the costmap, the action servers and the service.
 
         Raises:
             LinkwrightError: NODE431, a planner has no type.
@@ -83,17 +83,17 @@ class PlannerNode(ManagedNode):
         self.register(self.create_service(kind, "is_path_valid", self._is_path_valid))
 
     def activate(self) -> None:
-        """Accept goals."""
+        """Activate the costmap, and accept goals."""
         self.costmap.trigger_activate()
 
     def deactivate(self) -> None:
-        """Stop planning, and refuse goals."""
+        """Stop planning, deactivate the costmap, and refuse goals."""
         self._stop()
         if self.costmap.is_active:
             self.costmap.trigger_deactivate()
 
     def cleanup(self) -> None:
-        """Drop the costmap."""
+        """Stop planning, and clean up the costmap."""
         self._stop()
         if self.costmap.lifecycle_state == INACTIVE:
             self.costmap.trigger_cleanup()
@@ -126,7 +126,7 @@ class PlannerNode(ManagedNode):
     # --- goals --------------------------------------------------------------------------------------------------------
 
     def _offer(self, kind: str, name: str, work: Callable[[Any], Work]) -> None:
-        """Offer an action whose paths are computed by a generator."""
+        """Offer an action whose paths are computed by the generator that `work` returns."""
 
         def begin(goal: ServerGoalHandle) -> None:
             self._stop(name)
@@ -165,13 +165,13 @@ class PlannerNode(ManagedNode):
             )
 
     def _stop(self, *names: str) -> None:
-        """Stop planning for the named actions, or for all if none is named."""
+        """Stop planning for the named actions, or for all actions if no name is given."""
         for name in names or tuple(self._work):
             work = self._work.pop(name, None)
             if work is not None:
                 work.stop()
 
-    # --- work ---------------------------------------------------------------------------------------------------------
+    # --- planning -----------------------------------------------------------------------------------------------------
 
     def _to_pose(self, request: Any) -> Work:
         yield from self._until_current()

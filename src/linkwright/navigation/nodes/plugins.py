@@ -1,4 +1,4 @@
-"""Types and parameters, ``NAME.parameter``, of plugins of nav2's servers."""
+"""Types and parameters of plugins of nav2's servers, such as ``FollowPath.plugin``."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def value_of(node: Node, name: str, default: Any) -> Any:
 
 
 def texts_of(node: Node, name: str, default: Sequence[str]) -> list[str]:
-    """Return the value of a parameter that is a list of texts, which may be empty.
+    """Return the value of a string-array parameter, which may be empty.
 
     The parameter is declared first if necessary; see `value_of`.
     """
@@ -51,7 +51,7 @@ def type_of(node: Node, plugin: str, usual: Mapping[str, str]) -> str:
 
 
 def declare_unread(node: Node, plugin: str) -> list[str]:
-    """Declare the unknown parameters of a plugin, and return their names without the plugin's prefix."""
+    """Declare the undeclared parameters of a plugin, and return their names without the prefix."""
     names = [
         undeclared_override
         for undeclared_override in node.undeclared_overrides()

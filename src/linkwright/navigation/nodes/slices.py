@@ -1,4 +1,4 @@
-"""Execution of long computations on the event loop in slices, between which other callbacks run."""
+"""Execution of long computations in slices on the event loop, between which other callbacks run."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ WAIT = "wait"
 
 
 class SlicedWork:
-    """Runs a generator until it ends or is stopped.
+    """A generator that runs in slices until it ends or is stopped.
 
     Args:
         node: the node whose clock times the waits.
         work: yields None to let other callbacks run, and `WAIT` to be resumed a little later.
-        is_wanted: returns whether to continue; called regularly.
-        done: called at the end with the result and None, or with None and the exception; with None twice if the work
-            was stopped.
+        is_wanted: returns whether to continue; called before each slice.
+        done: called at the end with the result and None, or with None and the exception; with None twice if `is_wanted`
+            returned False.
     """
 
     def __init__(
@@ -40,7 +40,7 @@ class SlicedWork:
         self._later()
 
     def stop(self) -> None:
-        """Stop the work; no callback is called."""
+        """Stop the work without calling `done`."""
         self._work.close()
         if self._turn is not None:
             self._turn.cancel()

@@ -1,7 +1,7 @@
-"""nav2's smoother_server: smooths paths for the action ``smooth_path``.
+"""nav2's smoother_server, which smooths paths for the action ``smooth_path``.
 
-Parameters, topics and results are those of nav2, Humble and Jazzy. All types of smoothers are accepted, and all work
-as nav2's simple smoother does; a line is logged if the type has another method.
+Parameters, topics and results are those of nav2, Humble and Jazzy. All types of smoothers are accepted, but they share
+the method of nav2's simple smoother; a line is logged for types that have another method in nav2.
 """
 
 from __future__ import annotations

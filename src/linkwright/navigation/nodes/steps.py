@@ -1,7 +1,8 @@
 """Managed nodes that execute goals in steps, most of which are goals of other servers.
 
-The work is a generator that is resumed once each cycle: ``yield`` waits for the next cycle. It returns when the goal is
-reached, raises `StepError` when the goal cannot be reached, and is closed when the goal is canceled.
+The work on a goal is a generator that is resumed once each cycle: ``yield`` waits for the next cycle. The generator
+returns when the goal is reached, raises `StepError` when the goal cannot be reached, and is closed when the goal is
+canceled.
 """
 
 from __future__ import annotations
@@ -23,10 +24,10 @@ _SERVER_SECONDS = 5.0
 
 
 class StepError(GoalError):
-    """Raised when a step failed.
+    """Raised when a step fails.
 
     Attributes:
-        is_final: whether trying again would not help.
+        is_final: whether a retry would not help.
     """
 
     def __init__(self, code: str, reason: str, *, is_final: bool = False) -> None:
@@ -35,13 +36,13 @@ class StepError(GoalError):
 
 
 class StepNode(ManagedNode):
-    """A node that works on one goal at a time, in steps."""
+    """A managed node that executes one goal at a time, in steps."""
 
     _work: Step | None = None
     _server: GoalServer | None = None
 
     def work_on(self, server: GoalServer, work: Step) -> None:
-        """Start working on the goal of a server, and end the work on any other goal."""
+        """Start executing the goal of a server; work on an earlier goal ends."""
         self._stop()
         if self._server is not None and self._server is not server:
             self._server.abort("UNKNOWN", "another goal took its place")
@@ -49,14 +50,14 @@ class StepNode(ManagedNode):
         self.begin_cycles(_PERIOD, self._cycle)
 
     def publish_feedback(self, server: GoalServer) -> None:
-        """Publish the feedback for the goal; called each cycle."""
+        """Publish the feedback for the active goal; called each cycle."""
 
     def result(self) -> dict[str, Any]:
-        """Return the fields of the result."""
+        """Return the fields of the result message, by name."""
         return {}
 
     def deactivate(self) -> None:
-        """Stop working, and refuse goals."""
+        """Stop working, and abort the active goal."""
         self._stop()
         if self._server is not None:
             self._server.abort("UNKNOWN", "the server was deactivated", **self.result())
@@ -67,12 +68,12 @@ class StepNode(ManagedNode):
         self._server = None
 
     def run_remote_goal(self, client: ActionClient, goal: Any, complaint: str) -> Step:
-        """Send a goal to another server and wait for its result.
+        """Send a goal to another server, wait for the result, and return it.
 
         The goal is canceled when this generator is closed.
 
         Raises:
-            StepError: there is no such server, or it did not reach the goal.
+            StepError: there is no such server, or the server did not reach the goal.
         """
         if not client.server_is_ready():
             raise StepError("UNKNOWN", f"{complaint}: there is no action {client.action_name}")
@@ -87,10 +88,12 @@ class StepNode(ManagedNode):
         return sent.result
 
     def until(self, is_done: Callable[[], bool], what: str) -> Step:
-        """Wait for a response.
+        """Wait until a condition holds.
+
+        `what` names the server in the error.
 
         Raises:
-            StepError: the response does not arrive.
+            StepError: the condition does not hold in time.
         """
         limit_ns = self.now_ns() + round(_SERVER_SECONDS * 1e9)
         while not is_done():
@@ -99,7 +102,7 @@ class StepNode(ManagedNode):
             yield
 
     def _cycle(self) -> None:
-        """Run the next step."""
+        """Run the next step, or end the goal."""
         server, work = self._server, self._work
         if server is None or work is None:
             self._stop()
@@ -123,7 +126,7 @@ class StepNode(ManagedNode):
             self.publish_feedback(server)
 
     def _stop(self) -> None:
-        """Stop working; goals at other servers are canceled."""
+        """Stop the cycles and close the generator, which cancels goals at other servers."""
         work, self._work = self._work, None
         if work is not None:
             work.close()
@@ -169,12 +172,15 @@ class SentGoal:
         return self.is_over and not self.has_succeeded
 
     def reason(self, usual: str) -> str:
-        """Return the reason of the failure from the server (Jazzy), or a default one."""
+        """Return a failure message: `usual`, and the server's error message, if any (Jazzy)."""
         message = getattr(self.result, "error_msg", "")
         return f"{usual}: {message}" if message else usual
 
     def cancel(self) -> None:
-        """Cancel the goal, unless it has ended."""
+        """Cancel the goal, unless it has ended.
+
+        A goal that is not accepted yet is canceled once it is.
+        """
         if not self.is_over:
             self._dropped = True
             if self._handle is not None:

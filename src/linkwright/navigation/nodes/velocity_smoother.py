@@ -1,8 +1,8 @@
-"""nav2's velocity_smoother: forwards ``cmd_vel`` within limits to ``cmd_vel_smoothed``.
+"""nav2's velocity_smoother, which forwards ``cmd_vel`` within limits to ``cmd_vel_smoothed``.
 
-A managed node; parameters, defaults and rules are those of nav2. Deliberate differences: unless
-``enable_stamped_cmd_vel`` is set it accepts Twist and TwistStamped, and publishes the type that subscribers expect; and
-it stops the robot, with a log line, when it is deactivated or the commanding publisher is lost.
+The node is managed; parameters, defaults and rules are those of nav2. Deliberate differences: unless
+``enable_stamped_cmd_vel`` is set, the node accepts Twist and TwistStamped, and publishes the type that subscribers
+expect; and it stops the robot, with a log line, when it is deactivated or the publisher of commands is lost.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ class _ManagedSmoother(ManagedNode):
         self.add_post_set_parameters_callback(lambda _: self._follow())
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Configure the node, unless its parameters contradict each other."""
+        """Configure the node, unless a parameter has an invalid value."""
         problem = self._problem({})
         if problem is not None:
             self.get_logger().error(str(problem))
@@ -89,14 +89,14 @@ class _ManagedSmoother(ManagedNode):
         self.begin_cycles(1.0 / self._frequency, self._smooth)
 
     def deactivate(self) -> None:
-        """Stop the robot and publish nothing more."""
+        """Stop the robot, and stop publishing."""
         self.end_cycles()
         if self._output is not None and any(self._last):
             self._output.stop()
         self._last, self._command = [0.0] * len(_AXES), None
 
     def cleanup(self) -> None:
-        """Remove the topics."""
+        """Stop publishing, and close the output topic."""
         self.end_cycles()
         if self._output is not None:
             self._output.close()
@@ -112,7 +112,7 @@ class _ManagedSmoother(ManagedNode):
         self._timeout: float = self._value("velocity_timeout")
         self._duration: float = self._value("odom_duration")
         columns = [list(self._value(name)) for name in _LIMITS]
-        if len(columns[0]) == len(_PLANAR):  # x, y and yaw
+        if len(columns[0]) == len(_PLANAR):  # The limits are for x, y and yaw only.
             columns = [_spread(column) for column in columns]
         self._limits = [Limits(least, most, *rest) for most, least, *rest in zip(*columns, strict=True)]
 
@@ -121,7 +121,7 @@ class _ManagedSmoother(ManagedNode):
         return SetParametersResult(successful=problem is None, reason="" if problem is None else str(problem))
 
     def _follow(self) -> None:
-        """Apply changed parameters to the active node; the topics remain as configured."""
+        """Apply changed parameters to the configured node; the topics stay the same."""
         if self._output is not None:
             before = self._frequency
             self._read()
@@ -129,7 +129,7 @@ class _ManagedSmoother(ManagedNode):
                 self.begin_cycles(1.0 / self._frequency, self._smooth)
 
     def _problem(self, changed: Mapping[str, Any]) -> Phrase | None:
-        """Return what is wrong with the parameters after a change, or None."""
+        """Return an error message if a parameter would be invalid after a change, else None."""
 
         def value(name: str) -> Any:
             return changed.get(name, self._value(name))
@@ -167,7 +167,7 @@ class _ManagedSmoother(ManagedNode):
         self._commanded_ns = self.get_clock().now().nanoseconds
 
     def _on_timeout(self) -> None:
-        """Decelerate to zero when commands time out."""
+        """Start to decelerate to zero because commands have timed out."""
         if self._command is not None and any(self._command):
             self._command = [0.0] * len(_AXES)
             self.get_logger().info(
@@ -179,7 +179,7 @@ class _ManagedSmoother(ManagedNode):
             )
 
     def _on_publisher_lost(self, publisher: EndpointInfo) -> None:
-        """Decelerate to zero when the publisher of commands is lost."""
+        """Start to decelerate to zero because the publisher of commands was lost."""
         if self._command is not None and any(self._command):
             self._command = [0.0] * len(_AXES)
             self.get_logger().warning(phrase("{who}: the robot is stopped", who=describe_lost_publisher(publisher)))
@@ -212,7 +212,7 @@ class _ManagedSmoother(ManagedNode):
 class VelocitySmoother(ManagedServer):
     """The running velocity_smoother node.
 
-    With ``autostart_node`` it configures and activates itself.
+    If ``autostart_node`` is set, the node configures and activates itself.
     """
 
     NODE = _ManagedSmoother
@@ -224,7 +224,7 @@ def _values(twist: Any) -> list[float]:
 
 
 def _spread(column: Sequence[float]) -> list[float]:
-    """Return limits of x, y and yaw as limits of all six axes; the other three are 0."""
+    """Expand limits of x, y and yaw to all six axes, with 0 for the other three."""
     spread = [0.0] * len(_AXES)
     for axis, value in zip(_PLANAR, column, strict=True):
         spread[axis] = value

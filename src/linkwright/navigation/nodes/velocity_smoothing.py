@@ -1,4 +1,4 @@
-"""Smoothing of velocities by limits of speed and acceleration for all axes, as in nav2's velocity smoother."""
+"""Smoothing of velocities by limits of speed and acceleration, as in nav2's velocity smoother."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ class Limits:
         least: the minimum velocity, 0 or less.
         most: the maximum velocity, 0 or more.
         acceleration: the maximum acceleration, 0 or more.
-        deceleration: the maximum deceleration as a negative number, 0 or less.
+        deceleration: the negated maximum deceleration, 0 or less.
         deadband: velocities with a smaller magnitude become 0.
     """
 
@@ -25,11 +25,11 @@ class Limits:
     deadband: float = 0.0
 
     def clamped(self, velocity: float) -> float:
-        """Return the velocity clamped to the speed limits."""
+        """Return a velocity clamped to the minimum and maximum velocity."""
         return min(max(velocity, self.least), self.most)
 
     def change(self, now: float, wanted: float, seconds: float) -> float:
-        """Return the maximum change of the velocity in a cycle, towards the requested one.
+        """Return the maximum magnitude of the velocity change in a cycle of some seconds.
 
         The acceleration limit applies when the speed increases without changing direction, otherwise the deceleration
         limit.
@@ -38,7 +38,7 @@ class Limits:
         return (self.acceleration if faster else -self.deceleration) * seconds
 
     def apply_deadband(self, velocity: float) -> float:
-        """Return the velocity, or 0 if it is within the deadband."""
+        """Return a velocity, or 0 if it is within the deadband."""
         return 0.0 if abs(velocity) < self.deadband else velocity
 
 
@@ -59,7 +59,7 @@ def smooth_velocities(
     changes = [axis.change(velocity, goal, seconds) for axis, velocity, goal in zip(limits, now, goals, strict=True)]
     part = 1.0
     if scaled:
-        # Ignore an axis that may not change; it would hold back all others.
+        # Ignore an axis whose velocity may not change; otherwise no axis could change.
         part = min([1.0, *(most / abs(way) for way, most in zip(ways, changes, strict=True) if abs(way) > most > 0.0)])
     return [
         velocity + min(max(part * way, -most), most) for velocity, way, most in zip(now, ways, changes, strict=True)

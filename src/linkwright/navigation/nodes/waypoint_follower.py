@@ -1,4 +1,4 @@
-"""nav2's waypoint_follower: navigates to poses one after the other and waits at each (``follow_waypoints``).
+"""nav2's waypoint_follower, which navigates to poses in turn and waits at each (``follow_waypoints``).
 
 A deliberate difference: waiting is the only supported task at waypoints; others are skipped with a log line.
 """
@@ -32,10 +32,10 @@ class WaypointNode(StepNode):
         self._index = 0
 
     def configure(self) -> None:
-        """Create the action server.
+        """Create the action server, and the client of ``navigate_to_pose``.
 
         Raises:
-            LinkwrightError: a parameter has another type.
+            LinkwrightError: a parameter has the wrong type.
         """
         task = str(self.get_parameter("waypoint_task_executor_plugin").value)
         kind = type_of(self, task, {"wait_at_waypoint": _WAITING})
@@ -50,11 +50,11 @@ class WaypointNode(StepNode):
         self._waypoints = self.register(GoalServer(self, kind, "follow_waypoints", self._start))
 
     def publish_feedback(self, server: GoalServer) -> None:
-        """Publish the feedback for the goal."""
+        """Publish the index of the current waypoint as feedback for the goal."""
         server.feedback(current_waypoint=self._index)
 
     def result(self) -> dict[str, Any]:
-        """Return the missed waypoints."""
+        """Return the result field with the missed waypoints."""
         return {"missed_waypoints": self._missed}
 
     def _start(self, goal: ServerGoalHandle) -> None:
@@ -87,7 +87,7 @@ class WaypointNode(StepNode):
             yield
 
     def _miss(self, pose: Any, reason: str) -> Any:
-        """Return a missed waypoint in the form used in results: in Humble, its index."""
+        """Return the result's item for the current waypoint: an index in Humble, else a message."""
         if is_before_iron():
             return self._index
         return get_message("nav2_msgs/msg/MissedWaypoint")(index=self._index, goal=pose, error_msg=reason)

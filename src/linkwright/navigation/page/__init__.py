@@ -1,1 +1,1 @@
-"""Page features of navigation: starting and stopping it, and the outcome of goals."""
+"""Page features of navigation: the panel that controls nav2, and the outcome of goals."""

@@ -1,4 +1,4 @@
-"""nav2's panel (nav2_rviz_plugins, "Navigation 2"): states, progress of the goal, and commands.
+"""The server side of nav2's panel (nav2_rviz_plugins, "Navigation 2"): states, goal progress and commands.
 
 The names of services and topics and the functions of the buttons are those of nav2's panel.
 """
@@ -54,7 +54,7 @@ _GOALS: dict[int, GoalState] = {
 
 
 class NavigationFeature(PageFeature):
-    """Monitors nav2 while a page shows the panel."""
+    """A page feature that monitors nav2 while a page shows the panel."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -62,7 +62,7 @@ class NavigationFeature(PageFeature):
         self._watch: _Watch | None = None
 
     def receive(self, page: Page, message: WatchNavigation | CommandNavigation) -> None:
-        """Start or stop sending the state to a page, or execute a command."""
+        """Start or stop sending nav2's state to a page, or execute a command."""
         if isinstance(message, CommandNavigation):
             if self._watch is not None and page in self._pages:
                 self._watch.command(message.command)
@@ -75,14 +75,14 @@ class NavigationFeature(PageFeature):
             self.page_closed(page)
 
     def page_closed(self, page: Page) -> None:
-        """Stop sending to the page."""
+        """Stop sending nav2's state to the page."""
         self._pages.discard(page)
         if not self._pages and self._watch is not None:
             self._watch.close()
             self._watch = None
 
     def close(self) -> None:
-        """Stop sending to pages."""
+        """Stop monitoring nav2."""
         for page in tuple(self._pages):
             self.page_closed(page)
 
@@ -92,10 +92,10 @@ class NavigationFeature(PageFeature):
 
 
 class _Watch:
-    """The state of nav2, from its topics and services.
+    """A monitor of nav2's state, from its topics and services.
 
     Attributes:
-        state: the state as sent to pages.
+        state: the state that was last sent to pages.
     """
 
     def __init__(self, context: ViewerContext, publish: Callable[[NavigationState], None]) -> None:
@@ -121,7 +121,7 @@ class _Watch:
         self._ask()
 
     def command(self, command: NavigationCommand) -> None:
-        """Execute the command of a button; only one command runs at a time."""
+        """Start executing the command of a button, unless another command is running."""
         if self._work is None or self._work.done():
             self._change(busy=True, problem="")
             self._work = asyncio.get_running_loop().create_task(self._do(command))
@@ -132,7 +132,7 @@ class _Watch:
             self._next.cancel()
         if self._work is not None:
             self._work.cancel()
-        with suppress(ValueError):  # The node may already have been destroyed.
+        with suppress(ValueError):  # The node may have been destroyed already.
             for client in (*self._active.values(), *self._manage.values(), self._cancel):
                 self._node.destroy_client(client)
             for subscription in self._subscriptions:
@@ -213,7 +213,7 @@ class _Watch:
         self._change(busy=False, problem="" if problem is None else str(problem))
 
     async def _call(self, client: Client[Any, Any], **fields: Any) -> Any:
-        """Return the response of a service, or None if its server disappeared meanwhile."""
+        """Return the response of a service, or None if the server disappears meanwhile."""
         future = client.call_async(client.srv_type.Request(**fields))
         while not await wait_for_future(self._node, future, _PERIOD):
             if not client.service_is_ready():
@@ -222,7 +222,10 @@ class _Watch:
         return future.result()
 
     async def _cancel_goals(self) -> Phrase | None:
-        """Cancel all goals, by a request with an empty id and time."""
+        """Cancel all goals, and return an error message or None.
+
+        A request with an empty id and time cancels all goals.
+        """
         if not self._cancel.service_is_ready():
             return phrase("there is no action '{name}'", name="navigate_to_pose")
         answer = await self._call(self._cancel)

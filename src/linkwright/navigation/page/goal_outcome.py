@@ -24,11 +24,10 @@ _LOG_DELAY = 0.3
 
 
 class GoalOutcomeFeature(PageFeature):
-    """Notifies pages when a goal of ``navigate_to_pose`` is aborted.
+    """A page feature that notifies pages when a goal of ``navigate_to_pose`` is aborted.
 
-    Subscribes while pages are open.
-
-    The reason is the last error that the node of the action has logged since the goal was accepted.
+    The reported reason is the last error that the node of the action has logged since the goal was accepted. Topics are
+    subscribed to only while pages are open.
     """
 
     def __init__(self, viewer: FeatureHost) -> None:
@@ -41,7 +40,7 @@ class GoalOutcomeFeature(PageFeature):
         self._due: asyncio.TimerHandle | None = None
 
     def opening(self) -> list[ServerMessage]:
-        """Return the outcome of the last goal."""
+        """Subscribe for the first page, and return the outcome of the last goal."""
         if not self._subscriptions:
             lasting = QoSProfile(depth=_STATES, durability=DurabilityPolicy.TRANSIENT_LOCAL)
             self._subscriptions = [
@@ -106,6 +105,6 @@ class GoalOutcomeFeature(PageFeature):
 
 
 def accepted_at(status: Any) -> tuple[int, int]:
-    """Return the time, as seconds and nanoseconds, at which the goal of a GoalStatus was accepted."""
+    """Return the time at which the goal of a GoalStatus was accepted, as (seconds, nanoseconds)."""
     stamp = status.goal_info.stamp
     return stamp.sec, stamp.nanosec

@@ -1,4 +1,4 @@
-"""Extraction of paths by descent on a potential, from a position to where the potential is zero.
+"""Extraction of paths by descent on a potential.
 
 Source: nav2_navfn_planner, which steps half a cell along the interpolated gradient.
 """
@@ -24,7 +24,7 @@ _AROUND = [(row, column) for row in (-1, 0, 1) for column in (-1, 0, 1) if row o
 
 
 class _Slope:
-    """The gradient of a potential, computed on demand."""
+    """The gradient of a potential, computed and cached on demand."""
 
     def __init__(self, least: Floats) -> None:
         self._least = least
@@ -32,20 +32,23 @@ class _Slope:
         self._gradients: dict[Cell, Place | None] = {}
 
     def at(self, row: int, column: int) -> float:
-        """Return the potential of a cell; infinite outside the grid."""
+        """Return the potential of a cell, infinite outside the grid."""
         if 0 <= row < self._rows and 0 <= column < self._columns:
             return float(self._least[row, column])
         return inf
 
     def joined(self, cell: Cell, other: Cell) -> bool:
-        """Return whether a straight step to an adjacent cell, including diagonals, avoids unreachable cells."""
+        """Return whether the straight step to an adjacent cell avoids unreachable cells.
+
+        A diagonal step passes a corner, so both cells beside the corner must be reachable, too.
+        """
         (row, column), (to_row, to_column) = cell, other
         return self.at(to_row, to_column) < inf and (
             row == to_row or column == to_column or max(self.at(row, to_column), self.at(to_row, column)) < inf
         )
 
     def steepest_neighbour(self, cell: Cell) -> Cell:
-        """Return the neighbour of a cell with the steepest descent."""
+        """Return the neighbour with the steepest descent, or the cell if no neighbour is lower."""
         row, column = cell
         here = self.at(row, column)
         best, steepest = cell, 0.0
@@ -57,7 +60,7 @@ class _Slope:
         return best
 
     def direction(self, place: Place) -> Place | None:
-        """Return the direction of steepest descent as a unit vector.
+        """Return the direction of steepest descent as a unit vector (rows, columns).
 
         Returns None where the potential is flat.
         """
@@ -94,7 +97,10 @@ class _Slope:
 
 
 def _difference(before: float, here: float, after: float) -> float:
-    """Return the derivative of a potential, which never descends towards an unreachable side."""
+    """Return the derivative of a potential along an axis.
+
+    The potential never descends towards an unreachable side.
+    """
     if before < inf and after < inf:
         return (after - before) / 2.0
     if before < inf:
@@ -108,7 +114,7 @@ def descend(least: Floats, source: Cell, begin: Place) -> Generator[None, None, 
     Args:
         least: a potential (see `potential`).
         source: the cell where the potential is zero.
-        begin: the start of the path, in a cell from which a path leads to the source.
+        begin: the row and column of the path's start, in a cell from which a path leads to the source.
 
     Returns:
         Rows and columns, of shape (n, 2), from the start to the middle of the source; empty for a cell without a path.
@@ -136,7 +142,7 @@ def descend(least: Floats, source: Cell, begin: Place) -> Generator[None, None, 
 def _step(slope: _Slope, place: Place, cell: Cell) -> Place | None:
     """Return the position half a cell downhill from a position in a cell.
 
-    Returns None if there is no way.
+    Returns None if the potential is flat or the step leads to an unreachable cell.
     """
     direction = slope.direction(place)
     if direction is None:

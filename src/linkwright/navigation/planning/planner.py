@@ -1,6 +1,6 @@
 """Planning of the cheapest path over a costmap between two poses.
 
-Source: nav2_navfn_planner (costs, tolerance, the texts of errors). Deliberate differences: the tolerance does not reach
+Source: nav2_navfn_planner (costs, tolerance, error messages). Deliberate differences: the tolerance does not reach
 through obstacles, so a goal within a wall is refused; and a robot that is too close to an obstacle may leave by the
 shortest path.
 """
@@ -33,7 +33,7 @@ _NO_WAY: Final = 1e-9
 
 
 class Problem(Enum):
-    """The reason why there is no plan, with the names of nav2's error codes."""
+    """The reasons why there is no plan, with the names of nav2's error codes."""
 
     START_OUTSIDE_MAP = "START_OUTSIDE_MAP"
     GOAL_OUTSIDE_MAP = "GOAL_OUTSIDE_MAP"
@@ -62,7 +62,7 @@ class Settings:
         tolerance: the maximum distance from the end of the path to an unreachable goal, in metres.
         use_astar: whether to skip cells that cannot be on a cheaper path; the result is the same.
         allow_unknown: whether paths may cross unknown cells.
-        use_final_approach_orientation: whether the final heading is that of the path instead of that of the goal.
+        use_final_approach_orientation: whether the final heading is the path's direction instead of the goal's heading.
     """
 
     tolerance: float = 0.5
@@ -83,7 +83,8 @@ def plan(costmap: Costmap, start: Pose, goal: Pose, settings: Settings) -> Gener
         settings: the settings of the planner.
 
     Returns:
-        Poses from the start to the goal, or as near to it as tolerated, of shape (n, 3), about a cell apart.
+        Poses from the start to the goal, or to the nearest position within the tolerance, of shape (n, 3), about a cell
+        apart.
 
     Raises:
         PlanError: there is no path.
@@ -137,7 +138,7 @@ def _occupied(problem: Problem, what: str, pose: Pose) -> PlanError:
 
 
 def _let_escape(price: Floats, costmap: Costmap, cell: Cell, start: Pose) -> None:
-    """Make the cells around a start too close to an obstacle passable, up to the nearest cell that is free.
+    """Make the cells passable that lead from a start near an obstacle to the nearest free cell.
 
     Raises:
         PlanError: there is no free cell nearby.
@@ -183,7 +184,7 @@ def _nearest(least: Floats, costmap: Costmap, goal: Pose, cell: Cell, settings: 
 
 
 def _thinned(way: NDArray[np.float64], price: Floats) -> NDArray[np.float64]:
-    """Return a path without every second point, if the straight line past the point avoids unreachable cells."""
+    """Drop every second point of a path where the straight line avoids unreachable cells."""
     cells = np.floor(way).astype(np.int64)
     between = np.arange(1, len(way) - 1, 2)
     before, after = cells[between - 1], cells[between + 1]
@@ -195,7 +196,7 @@ def _thinned(way: NDArray[np.float64], price: Floats) -> NDArray[np.float64]:
 def _poses(
     way: NDArray[np.float64], costmap: Costmap, start: Pose, last: Pose, settings: Settings
 ) -> NDArray[np.float64]:
-    """Return poses along rows and columns, from the exact start to the exact end."""
+    """Convert rows and columns to poses, of shape (n, 3), from the exact start to the exact end."""
     grid = costmap.grid
     points = way[:, ::-1] * grid.resolution + (grid.x, grid.y)
     points[0], points[-1] = start[:2], last[:2]

@@ -1,11 +1,9 @@
-"""Potentials: the cost of the cheapest path from one cell to each other cell.
+"""Potentials: the cost of the cheapest path from one cell to each other cell of a costmap.
 
-They are computed as a wavefront over a costmap.
-
-The wave solves the eikonal equation on a grid, as NavFn does: paths have all directions, not only along rows, columns
-and diagonals. All cells of the front are updated in the same step, and cells whose neighbours became cheaper are
-updated again, until nothing changes. The wave continues from expensive cells only when it has reached the same cost in
-cheap ones, because most expensive cells have a cheaper path around them.
+A potential is computed as a wavefront. The wave solves the eikonal equation on a grid, as NavFn does: paths have all
+directions, not only along rows, columns and diagonals. All cells of the front are updated in the same step, and cells
+whose neighbours became cheaper are updated again, until nothing changes. The wave continues from expensive cells only
+when it has reached the same cost in cheap ones, because most expensive cells have a cheaper path around them.
 
 Source: Brock and Khatib, High-speed navigation using the global dynamic window approach, ICRA 1999; nav2_navfn_planner
 (the cost of a cell).
@@ -37,11 +35,14 @@ _SMALLEST_GAIN: Final = 1e-3 * NEUTRAL
 
 
 def prices(costs: NDArray[np.uint8], *, allow_unknown: bool = True) -> Floats:
-    """Return the cost of crossing each cell of a costmap, of the same shape; infinite where the robot does not fit.
+    """Return the price of crossing each cell, infinite where the robot does not fit.
 
     Args:
         costs: the costs of the cells.
         allow_unknown: whether paths may cross unknown cells.
+
+    Returns:
+        Prices, of the shape of the costs.
     """
     table = np.minimum(NEUTRAL + _FACTOR * np.arange(256.0), _MOST)
     table[MAX_PASSABLE + 1 :] = np.inf
@@ -56,11 +57,11 @@ def potential(
 ) -> Generator[None, None, Floats]:
     """Compute the cost of the cheapest path from a cell to each other cell.
 
-    It yields after each step of the wave, so that other callbacks can run.
+    The generator yields after each step of the wave, so that other callbacks can run.
 
     Args:
         price: the cost of crossing cells, of shape (rows, columns); infinite for obstacles.
-        source: the start of paths; it may have any price.
+        source: the start of the paths; it may have any price.
         target: the goal of the requested path; cells that cost more are skipped. None for all cells.
         heuristic: whether to add the minimum cost to the target when cells are skipped (A*).
 
@@ -73,14 +74,14 @@ def potential(
     padded[1:-1, 1:-1] = price
     step = padded.ravel()
     least = np.full(step.size, np.inf)
-    gain = np.where(step < np.inf, np.inf, -np.inf)  # Like `least`, except that cells without a path gain nothing.
+    gain = np.where(step < np.inf, np.inf, -np.inf)  # Like `least`, except that obstacles can never become cheaper.
     mark = np.zeros(step.size, np.intp)
     offsets = np.array([[-1], [1], [-width], [width]])
     begin = (source[0] + 1) * width + source[1] + 1
     end = None if target is None else (target[0] + 1) * width + target[1] + 1
     ahead = _least_ahead(price, target) if heuristic and target is not None else None
     least[begin], gain[begin] = 0.0, -np.inf
-    least_step = float(step.min()) / sqrt(2.0)  # if the path enters from both axes
+    least_step = float(step.min()) / sqrt(2.0)  # The smallest increase, if the path enters from both axes.
     front: NDArray[Any] = begin + offsets[:, 0]
     front = front[step[front] < np.inf]
     cheapest = float(step.min())
@@ -118,15 +119,18 @@ def potential(
 
 
 def _crossed(a: Floats, b: Floats, price: Floats) -> Floats:
-    """Return the potential of cells from their cheaper neighbour along each axis and the cost of crossing."""
+    """Return the potential of cells from their prices and the cheaper neighbour on each axis."""
     low, high = np.minimum(a, b), np.maximum(a, b)
-    apart = np.minimum(high - low, price)  # If they differ by more than the price, the path enters from one side only.
+    apart = np.minimum(high - low, price)  # Beyond the price, the path enters from one side only.
     value: Floats = low + 0.5 * (apart + np.sqrt(2.0 * price * price - apart * apart))
     return value
 
 
 def _least_ahead(price: Floats, target: Cell) -> Floats:
-    """Return a lower bound of the cost from each cell to the target, for a grid with a border."""
+    """Return a lower bound of the cost from each cell to the target.
+
+    The result is flat, and includes a border of one cell.
+    """
     rows, columns = price.shape
     y, x = np.arange(-1.0, rows + 1) - target[0], np.arange(-1.0, columns + 1) - target[1]
     ahead: Floats = (float(price.min()) * np.hypot(y[:, None], x[None, :])).ravel()

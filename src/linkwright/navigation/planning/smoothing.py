@@ -1,7 +1,9 @@
-"""Smoothing of paths: points move towards the middle of their neighbours, but stay near their positions.
+"""Smoothing of paths, which moves points towards the middle of their neighbours.
+
+Points stay near their original positions.
 
 Source: nav2_smoother ``SimpleSmoother``: its iteration converges to the solution of a tridiagonal linear system, which
-is solved directly. Points that would move into an obstacle stay where they are.
+is solved directly here. Points that would move into an obstacle keep their positions.
 """
 
 from __future__ import annotations
@@ -26,10 +28,10 @@ class Smoothing:
 
     Attributes:
         w_data: the weight of a point's original position.
-        w_smooth: the weight of the middle of its neighbours.
+        w_smooth: the weight of the middle of the point's neighbours.
         do_refinement: whether to smooth the result again.
         refinement_num: the number of refinements.
-        enforce_path_inversion: whether points stay where the robot reverses direction.
+        enforce_path_inversion: whether points at which the robot reverses direction are fixed.
     """
 
     w_data: float = 0.2
@@ -48,8 +50,8 @@ def smoothed(points: Points, smoothing: Smoothing, costmap: Costmap | None = Non
         costmap: the costmap whose obstacles are avoided; None for no obstacles.
 
     Returns:
-        The same number of points, with the same first and last one; and whether all could move to their smoothed
-        positions.
+        The smoothed points, of the same shape, with the same first and last one; and whether no point was held back by
+        an obstacle.
     """
     found, complete = points, True
     rounds = 1 + (smoothing.refinement_num if smoothing.do_refinement else 0)
@@ -61,16 +63,16 @@ def smoothed(points: Points, smoothing: Smoothing, costmap: Costmap | None = Non
 
 
 def directions(points: Points, last: float) -> NDArray[np.float64]:
-    """Return the yaw of each point of a path towards the next point, in radians, of shape (n,).
+    """Return the yaw from each point of a path to the next one, in radians, of shape (n,).
 
-    The last yaw is given by `last`.
+    The yaw of the last point is `last`.
     """
     ahead = np.diff(points, axis=0)
     return np.append(np.arctan2(ahead[:, 1], ahead[:, 0]), last)
 
 
 def _fixed(points: Points, smoothing: Smoothing) -> NDArray[np.bool_]:
-    """Return which points are fixed: the ends, and points where the path reverses."""
+    """Return a mask of the fixed points: the ends, and reversals if they are enforced."""
     fixed = np.zeros(len(points), np.bool_)
     fixed[[0, -1]] = True
     if smoothing.enforce_path_inversion and len(points) >= _LEAST_POINTS:
@@ -96,7 +98,7 @@ def _once(
 
 
 def _blocked(points: Points, costmap: Costmap) -> NDArray[np.bool_]:
-    """Return which points collide, or have a colliding midpoint to the next point."""
+    """Return a mask of the points that collide, or have a colliding midpoint to a neighbour."""
     middles = (points + np.roll(points, -1, axis=0)) / 2.0
     middles[-1] = points[-1]
 
@@ -112,7 +114,10 @@ def _blocked(points: Points, costmap: Costmap) -> NDArray[np.bool_]:
 
 
 def _solved(points: Points, stays: NDArray[np.bool_], smoothing: Smoothing) -> Points:
-    """Return the equilibrium of w_data (y - x) = w_smooth (previous + next - 2 y) for the points that may move."""
+    """Return the points y that solve w_data (y - x) = w_smooth (previous + next - 2 y).
+
+    Points in the mask `stays` keep their positions x.
+    """
     beside = np.where(stays, 0.0, -smoothing.w_smooth)
     bands = np.zeros((3, len(points)))
     bands[0, 1:] = beside[:-1]

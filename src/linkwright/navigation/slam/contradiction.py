@@ -49,7 +49,7 @@ def _share_passed_through(viewer: PlanarScan, other: PlanarScan, pose: Floats) -
     ranges = np.concatenate((ranges[-1:], ranges, ranges[:1]))
     wanted = np.arctan2(points[:, 1], points[:, 0])
     after = np.clip(np.searchsorted(bearings, wanted), 1, len(bearings) - 1)
-    # Require both neighbouring rays to be longer: next to an edge only one of them is.
+    # Require both neighbouring rays to be longer: next to an edge, only one of them is longer.
     close = (bearings[after] - wanted < _APART) & (wanted - bearings[after - 1] < _APART)
     further = np.minimum(ranges[after], ranges[after - 1]) > np.hypot(points[:, 0], points[:, 1]) + _BEHIND
     return float((close & further).sum() / max(int(close.sum()), _FEWEST))

@@ -1,7 +1,7 @@
 """The map and the robot's pose in it, from laser scans and odometry, as in slam_toolbox (Karto).
 
-As in Karto, some scans become nodes of a pose graph: each is matched against the last ones, linked to scans of earlier
-passes nearby, and tried against scans further away to close a loop.
+As in Karto, some scans become nodes of a pose graph: each is matched against the latest ones, linked to nearby scans of
+earlier passes, and matched against scans further away to close a loop.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ class Outcome:
 
 
 class Mapper:
-    """Builds a graph of scans, and the map from the graph.
+    """A mapper that builds a graph of scans, and draws the map from the graph.
 
     Args:
         settings: the settings of the mapper.
@@ -89,16 +89,19 @@ class Mapper:
         return 0 if self._last is None else self._last[1]
 
     def replace(self, graph: PoseGraph, scans: list[PlanarScan], odometry: list[Floats]) -> None:
-        """Replace the graph; none of the new graph is drawn yet."""
+        """Replace the graph, and erase the old scans from the map; the new ones are not drawn yet."""
         for number in range(len(self.scans)):
             self.occupancy.erase(number)
         self.graph, self.scans, self.odometry = graph, scans, odometry
         self.begin_session(None)
 
     def begin_session(self, pose: Floats | None) -> None:
-        """Start a session in the graph: search for the next scan around a pose, of shape (3,).
+        """Start a session in the graph, whose first scan is matched around a pose.
 
-        None means the pose of the first scan. Scans of earlier sessions no longer count as the last scans.
+        Scans of earlier sessions no longer count as the latest scans.
+
+        Args:
+            pose: the expected pose, of shape (3,); None for the pose of the graph's first scan.
         """
         self._session = len(self.scans)
         self._last = None
@@ -109,12 +112,13 @@ class Mapper:
             self._in_map = self.graph.poses[0].copy()
 
     def should_process(self, odometry: Floats, stamp_ns: int, since: tuple[Floats, int] | None = None) -> bool:
-        """Return whether to process a scan: whether the robot moved far enough since the last one.
+        """Return whether enough time has passed and the robot moved far enough since the last scan.
 
         Args:
             odometry: the odometry pose at the scan, of shape (3,).
             stamp_ns: the time of the scan.
-            since: the odometry pose and time of a scan that waits to be processed, which replaces the last one.
+            since: the odometry pose and time of a queued scan that counts as the last one; None for the last processed
+                scan.
         """
         last = since or self._last
         if last is None:
@@ -129,13 +133,13 @@ class Mapper:
         )
 
     def expected(self, odometry: Floats) -> Floats:
-        """Return the robot's pose in the map, of shape (3,), from odometry since the last processed scan."""
+        """Return the pose in the map, of shape (3,), predicted by odometry since the last scan."""
         if self._in_map is None:
             return odometry
         return self._in_map if self._last is None else compose(self._in_map, relative_pose(self._last[0], odometry))
 
     def process(self, scan: PlanarScan, odometry: Floats) -> Steps[Outcome]:
-        """Add a scan to the graph, in steps.
+        """Add a scan to the graph and draw the changes of the map, in steps.
 
         Args:
             scan: the scan.
@@ -185,7 +189,7 @@ class Mapper:
         return _outcome(self._in_map, information, found)
 
     def redraw(self) -> Steps[None]:
-        """Draw the scans that are missing from the map or whose poses changed; each scan is a step."""
+        """Draw the scans that are missing in the map or whose poses changed; each scan is a step."""
         tolerance = _REDRAWN * self.occupancy.resolution
         for number, scan in enumerate(self.scans):
             pose, drawn = self.graph.poses[number], self.occupancy.drawn_at(number)
@@ -202,7 +206,7 @@ class Mapper:
         return self.graph.add_node(pose)
 
     def _match_first_scan(self, scan: PlanarScan, guess: Floats, odometry: Floats) -> Steps[Outcome]:
-        """Match the first scan of a new session against scans of earlier sessions."""
+        """Add the first scan of a session, matched against scans of earlier sessions."""
         nodes = self._nearest_scans(guess)
         found = yield from self._match(nodes, scan, guess, self.settings.loop)
         pose = guess if found is None else found.pose
@@ -217,13 +221,13 @@ class Mapper:
         return _outcome(pose, information, found)
 
     def _buffer(self, pose: Floats) -> list[int]:
-        """Return the last scans of this session that are near a pose."""
+        """Return the numbers of the latest scans of this session that are near a pose."""
         begin = max(self._session, len(self.scans) - self.settings.scan_buffer_size)
         near = self._distances(pose) <= self.settings.scan_buffer_maximum_scan_distance
         return [number for number in range(begin, len(self.scans)) if near[number]]
 
     def _nearest_scans(self, pose: Floats) -> list[int]:
-        """Return the nearest scans of all sessions."""
+        """Return the numbers of the scans nearest to a pose, of all sessions, nearest first."""
         order = np.argsort(self._distances(pose), kind="stable")
         return [int(index) for index in order[: 2 * self.settings.scan_buffer_size]]
 
@@ -238,7 +242,7 @@ class Mapper:
     def _match(self, nodes: list[int], scan: PlanarScan, guess: Floats, search: Search) -> Steps[Match | None]:
         """Match a scan against the scans of some nodes.
 
-        Returns None if they do not constrain the pose.
+        Returns None if the match is not good enough or too far from the guess.
         """
         reference = Reference([self.scans[node] for node in nodes], self.graph.poses[nodes])
         yield
@@ -276,7 +280,10 @@ class Mapper:
         return links, loops
 
     def _chains(self, number: int, distance: float) -> list[list[int]]:
-        """Return the chains of consecutive nodes near a node and not among its last ones, nearest first."""
+        """Return the chains of consecutive nodes within a distance of a node, nearest first.
+
+        The latest nodes before the given one are left out.
+        """
         away = self._distances(self.graph.poses[number])
         last = number - self.settings.scan_buffer_size
         chains: list[list[int]] = []
@@ -288,7 +295,7 @@ class Mapper:
         return sorted(chains, key=lambda chain: (float(away[chain].min()), chain[0]))
 
     def _close(self, number: int, chain: list[int]) -> Steps[bool]:
-        """Try to close a loop with a chain."""
+        """Try to close a loop with a chain of nodes, and return whether an edge was added."""
         settings = self.settings
         guess = self.graph.poses[number]
         found = yield from self._match(chain, self.scans[number], guess, settings.loop)
@@ -302,9 +309,9 @@ class Mapper:
     def _connect(
         self, number: int, chain: list[int], search: Search, least: float, *, around: Floats | None = None
     ) -> Steps[Match | None]:
-        """Match a node against a chain, and add an edge if the match is certain.
+        """Match a node against a chain of nodes, add an edge, and return the match.
 
-        Returns None if it is not.
+        Returns None, without adding an edge, if the match is not certain.
         """
         scan = self.scans[number]
         guess = self.graph.poses[number] if around is None else around
@@ -322,7 +329,7 @@ class Mapper:
 
 
 def _worst_variance(found: Match) -> float:
-    """Return the larger variance of the position, in square metres."""
+    """Return the larger of a match's position variances along x and y, in square metres."""
     return float(np.linalg.inv(found.information + _NOTHING * np.eye(3)).diagonal()[:2].max())
 
 
@@ -333,7 +340,10 @@ def _outcome(pose: Floats, information: Floats, found: Match | None, links: int 
 
 
 def _odometric_information(moved: Floats) -> Floats:
-    """Return the information matrix of odometry for a motion of shape (3,), with about 10 % standard deviation."""
+    """Return the information matrix, of shape (3, 3), of an odometry motion of shape (3,).
+
+    The standard deviation is about 10 % of the motion.
+    """
     turned = abs(float(wrapped(moved)[2]))
     along = 0.03 + 0.1 * float(np.hypot(moved[0], moved[1])) + 0.03 * turned
     around = 0.02 + 0.1 * turned + 0.05 * float(np.hypot(moved[0], moved[1]))

@@ -33,11 +33,11 @@ _EXPANSIONS = (0.349, 0.698, 1.047)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Match:
-    """The result of a match.
+    """The result of scan matching.
 
     Attributes:
         pose: the pose of the robot, of shape (3,), in the frame of the reference.
-        response: the response, 0 to 1 (see `linkwright.navigation.slam.search`), without penalties if there were none.
+        response: the response of the search, 0 to 1 (see `linkwright.navigation.slam.search`), reduced by penalties.
         information: the inverse of the pose's covariance, of shape (3, 3), for x, y and yaw in the frame of the robot;
             near 0 in directions without information, as along a corridor.
         inliers: the share of the points on a wall, 0 to 1.
@@ -54,7 +54,7 @@ class Match:
 def match(
     reference: Reference, scan: PlanarScan, guess: Floats, search: Search, *, expand: bool = False
 ) -> Steps[Match | None]:
-    """Match a scan, in steps.
+    """Match a scan against earlier scans, in steps.
 
     In directions without information, as along a corridor, the pose is that of the guess.
 
@@ -63,7 +63,7 @@ def match(
         scan: the current scan.
         guess: the expected pose of the robot, of shape (3,).
         search: the window and method of the search.
-        expand: whether to try larger angles if nothing fits.
+        expand: whether to search larger angles if the response is 0.
 
     Returns:
         The match; None if there are too few points.
@@ -89,7 +89,7 @@ def _refined(reference: Reference, scan: PlanarScan, guess: Floats, start: Float
     Source: Censi, "An ICP variant using a point-to-line metric", 2008.
     """
     reach = max(float(np.sqrt((scan.points**2).sum(axis=1).mean())), 0.1)
-    scale = np.array((1.0, 1.0, 1.0 / reach))  # Scale the rotation to the distance by which it moves points.
+    scale = np.array((1.0, 1.0, 1.0 / reach))  # Scale the rotation to the distance by which it moves an average point.
     pose, farthest = start.copy(), _FARTHEST
     system = _equations(reference, scan, pose, farthest, scale)
     free = _constrained(system[0], len(scan.points))
@@ -126,11 +126,11 @@ def _constrained(hessian: Floats, points: int) -> Floats:
 def _equations(
     reference: Reference, scan: PlanarScan, pose: Floats, farthest: float, scale: Floats
 ) -> tuple[Floats, Floats, float, float]:
-    """Return the normal equations at a pose.
+    """Return the normal equations of point-to-line matching at a pose.
 
     Returns:
-        The matrix, of shape (3, 3); the right-hand side, of shape (3,); the share of the points that were used; and
-        their error in metres.
+        The matrix, of shape (3, 3); the negated right-hand side, of shape (3,); the share of the points that are on a
+        wall; and the error of the points that were used, in metres.
     """
     points = transform_points(pose, scan.points)
     distances, _, places, normals, flatness = reference.nearest(points)

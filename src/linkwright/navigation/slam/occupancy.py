@@ -1,4 +1,4 @@
-"""The occupancy grid computed from scans: counts of the rays that pass through each cell or end in it.
+"""The occupancy grid computed from scans, by counting the rays that pass through each cell or end in it.
 
 Source: Karto's occupancy grid, with its parameters ``min_pass_through`` and ``occupancy_threshold``.
 """
@@ -22,7 +22,7 @@ Cells = NDArray[np.int64]
 
 @dataclass(slots=True, eq=False)
 class _Trace:
-    """The counts of one scan: cells (row, column) without duplicates, with their passes and hits."""
+    """The counts of one scan: cells (row, column) without duplicates, their passes and hits."""
 
     pose: Floats
     cells: Cells
@@ -31,7 +31,9 @@ class _Trace:
 
 
 class OccupancyMap:
-    """The ray counts of many scans; a scan whose pose is corrected is removed and added again.
+    """The ray counts of many scans.
+
+    A scan whose pose is corrected can be removed and added again.
 
     Args:
         resolution: the side of a cell, in metres.
@@ -52,7 +54,10 @@ class OccupancyMap:
         self._traces: dict[int, _Trace] = {}
 
     def draw(self, number: int, scan: PlanarScan, pose: Floats) -> None:
-        """Add a scan at a pose of the robot of shape (3,), replacing the scan with the same number."""
+        """Add a scan at a pose of the robot, in place of any scan with the same number.
+
+        `pose` has shape (3,).
+        """
         self.erase(number)
         trace = self._traced(scan, pose)
         if not len(trace.cells):
@@ -68,14 +73,14 @@ class OccupancyMap:
             self._count(trace, -1)
 
     def drawn_at(self, number: int) -> Floats | None:
-        """Return the pose at which a scan was added; None if it is not in the map."""
+        """Return the pose at which a scan was added, or None if the scan is not in the map."""
         trace = self._traces.get(number)
         return None if trace is None else trace.pose
 
     def grid(self) -> Grid | None:
-        """Return the smallest grid with all known cells, as int8 FREE, OCCUPIED or UNKNOWN.
+        """Return the smallest grid that contains all cells reached by rays.
 
-        Returns None if none is known.
+        The cells are int8: FREE, OCCUPIED or UNKNOWN. Returns None if no cell was reached.
         """
         seen = self._passes > 0
         rows, columns = np.flatnonzero(seen.any(axis=1)), np.flatnonzero(seen.any(axis=0))
@@ -111,7 +116,7 @@ class OccupancyMap:
         self._corner = low
 
     def _traced(self, scan: PlanarScan, pose: Floats) -> _Trace:
-        """Count the cells along all rays of a scan."""
+        """Return the counts of the cells along all rays of a scan."""
         ends = transform_points(pose, np.concatenate((scan.points, scan.passed)))
         origin = transform_points(pose, scan.origin[None])[0] / self.resolution
         away = ends / self.resolution - origin
@@ -121,7 +126,7 @@ class OccupancyMap:
         part = (np.arange(len(ray)) - first[ray]) / counts[ray]
         walked = np.floor(origin + away[ray] * part[:, None]).astype(np.int64)[:, ::-1]
         last = np.floor(ends / self.resolution).astype(np.int64)[:, ::-1]
-        # A ray passes each cell once, and its last cell is counted as its end.
+        # Count each cell once per ray, and the last cell only as the ray's end.
         same = np.zeros(len(walked), dtype=bool)
         same[1:] = (walked[1:] == walked[:-1]).all(axis=1) & (ray[1:] == ray[:-1])
         walked = walked[~same & (walked != last[ray]).any(axis=1)]

@@ -19,7 +19,7 @@ _KERNEL = 9.0
 
 @dataclass(slots=True)
 class PoseGraph:
-    """Poses, and measured relative poses between them.
+    """A graph of poses and measured relative poses between them.
 
     The first pose is fixed. The graph is solved by Gauss-Newton on sparse matrices (Grisetti et al., "A Tutorial on
     Graph-Based SLAM", 2010). Edges of loops may be wrong, so they get a Cauchy kernel in a second pass.
@@ -28,9 +28,10 @@ class PoseGraph:
         poses: the poses of the nodes, of shape (n, 3).
         first: the first node of each edge.
         second: the second node of each edge.
-        measured: the pose of the second node in the frame of the first, (3,) each.
-        information: the inverse of the covariance of `measured` in the frame of the second node, (3, 3) each.
-        doubtful: whether the edge may be wrong.
+        measured: for each edge, the pose of the second node in the frame of the first, of shape (3,).
+        information: for each edge, the inverse of the covariance of `measured` in the frame of the second node, of
+            shape (3, 3).
+        doubtful: for each edge, whether it may be wrong.
     """
 
     poses: Floats = field(default_factory=lambda: np.zeros((0, 3)))
@@ -52,7 +53,7 @@ class PoseGraph:
     def add_edge(
         self, first: int, second: int, measured: Floats, information: Floats, *, doubtful: bool = False
     ) -> None:
-        """Add a measured relative pose between two nodes; see the attributes."""
+        """Add a measured relative pose between two nodes; the arguments are described at the class."""
         self.first.append(first)
         self.second.append(second)
         self.measured.append(measured)
@@ -60,7 +61,7 @@ class PoseGraph:
         self.doubtful.append(doubtful)
 
     def solve(self) -> Steps[float]:
-        """Optimise the poses by all edges, in steps.
+        """Optimise the poses with respect to all edges, in steps.
 
         Returns:
             The largest distance that a node moved, in metres.
@@ -102,12 +103,15 @@ class PoseGraph:
         return float(np.abs(step).max())
 
     def _linearized(self) -> tuple[Floats, Floats, Floats]:
-        """Return the residual of each edge, (m, 3), and its Jacobians by the first and second pose, (m, 3, 3) each."""
+        """Return the residuals of the edges, (m, 3), and their Jacobians, (m, 3, 3) each.
+
+        The Jacobians are with respect to the first and the second pose of each edge.
+        """
         start, end = self.poses[self.first], self.poses[self.second]
         measured = np.array(self.measured)
         yaw = start[:, 2] + measured[:, 2]
         cos, sin = np.cos(yaw), np.sin(yaw)
-        to_second = np.stack((np.stack((cos, sin), -1), np.stack((-sin, cos), -1)), axis=1)  # rotates world vectors
+        to_second = np.stack((np.stack((cos, sin), -1), np.stack((-sin, cos), -1)), axis=1)  # Rotates world vectors.
         away = end[:, :2] - start[:, :2]
         residuals = np.zeros((len(start), 3))
         cos_m, sin_m = np.cos(measured[:, 2]), np.sin(measured[:, 2])
@@ -119,6 +123,6 @@ class PoseGraph:
         of_second[:, :2, :2] = to_second
         of_second[:, 2, 2] = 1.0
         of_first = -of_second
-        turned = np.stack((away[:, 1], -away[:, 0]), axis=-1)  # the derivative of R(-yaw) v is R(-yaw) (v_y, -v_x)
+        turned = np.stack((away[:, 1], -away[:, 0]), axis=-1)  # The derivative of R(-yaw) v is R(-yaw) (v_y, -v_x).
         of_first[:, :2, 2] = np.einsum("nij,nj->ni", to_second, turned)
         return residuals, of_first, of_second

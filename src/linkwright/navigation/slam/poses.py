@@ -1,4 +1,4 @@
-"""Poses in the plane: arrays (x, y, yaw) in metres and radians, one of shape (3,) or many of shape (..., 3)."""
+"""Poses in the plane, as arrays (x, y, yaw) in metres and radians, of shape (3,) or (..., 3)."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def wrapped(angles: Floats) -> Floats:
 
 
 def compose(b_in_a: Floats, c_in_b: Floats) -> Floats:
-    """Return the pose of c in a from the poses of b in a and c in b, of shape (..., 3)."""
+    """Return the poses of c in a, of shape (..., 3), given those of b in a and of c in b."""
     cos, sin = np.cos(b_in_a[..., 2]), np.sin(b_in_a[..., 2])
     x, y = c_in_b[..., 0], c_in_b[..., 1]
     yaw = wrapped(b_in_a[..., 2] + c_in_b[..., 2])
@@ -26,7 +26,7 @@ def compose(b_in_a: Floats, c_in_b: Floats) -> Floats:
 
 
 def inverse(b_in_a: Floats) -> Floats:
-    """Return the pose of a in b from the pose of b in a, of shape (..., 3)."""
+    """Return the poses of a in b, of shape (..., 3), given the poses of b in a."""
     cos, sin = np.cos(b_in_a[..., 2]), np.sin(b_in_a[..., 2])
     x, y = b_in_a[..., 0], b_in_a[..., 1]
     result: Floats = np.stack((-cos * x - sin * y, sin * x - cos * y, -b_in_a[..., 2]), axis=-1)
@@ -34,12 +34,12 @@ def inverse(b_in_a: Floats) -> Floats:
 
 
 def relative_pose(b_in_a: Floats, c_in_a: Floats) -> Floats:
-    """Return the pose of c in b from the poses of b and c in a, of shape (..., 3)."""
+    """Return the poses of c in b, of shape (..., 3), given those of b in a and of c in a."""
     return compose(inverse(b_in_a), c_in_a)
 
 
 def transform_points(pose: Floats, points: Floats) -> Floats:
-    """Transform points of shape (n, 2) by a pose of shape (3,)."""
+    """Transform points, of shape (n, 2), from a frame with a pose, of shape (3,)."""
     cos, sin = np.cos(pose[2]), np.sin(pose[2])
     result: Floats = points @ np.array(((cos, sin), (-sin, cos))) + pose[:2]
     return result

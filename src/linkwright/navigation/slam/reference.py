@@ -1,4 +1,4 @@
-"""Earlier scans, prepared for matching other scans against them."""
+"""Earlier scans in the form in which other scans are matched against them."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _LEAST = 0.01
 
 
 class Reference:
-    """The points of scans, their likelihood field, and the directions of their walls.
+    """The points of earlier scans, and the directions of their walls.
 
     Points within 5 cm of each other are replaced by their mean, which is more accurate than one reading.
 
@@ -55,7 +55,7 @@ class Reference:
         return len(self.points)
 
     def find_lines(self) -> None:
-        """Compute the directions of walls from each point's neighbours, as needed by `nearest`."""
+        """Compute the directions of walls from each point's neighbours, which `nearest` requires."""
         self._tree = load_scipy("spatial").cKDTree(self.points)
         count = min(_NEIGHBOURS, len(self.points))
         distances, indices = self._tree.query(self.points, k=count)
@@ -69,17 +69,17 @@ class Reference:
         normals[away] *= -1
         root = np.sqrt((xx - yy) ** 2 + 4 * xy**2)
         total = np.maximum(xx + yy, 1e-12)
-        flatness = root / total  # 1 for a line, 0 for points scattered in all directions
+        flatness = root / total  # 1 for a line, 0 for points scattered in all directions.
         flatness[distances.reshape(-1, count)[:, -1] > _SPREAD] = 0.0
         self._normals: Floats = normals
         self._flatness: Floats = flatness if count >= 3 else np.zeros(len(self.points))
 
     def nearest(self, points: Floats) -> tuple[Floats, NDArray[np.int64], Floats, Floats, Floats]:
-        """Return the nearest reference point to each point of an array of shape (n, 2).
+        """Return the nearest reference point to each of some points, of shape (n, 2).
 
         Returns:
-            Distances (n,), indices (n,), positions (n, 2), normals (n, 2) towards the viewpoint, and the straightness
-            of the wall (n,), 0 to 1.
+            Distances (n,), indices (n,), positions (n, 2), normals of the wall towards the sensor (n, 2), and the
+            straightness of the wall (n,), 0 to 1.
         """
         distances, indices = self._tree.query(points)
         return distances, indices, self.points[indices], self._normals[indices], self._flatness[indices]
@@ -91,13 +91,13 @@ class Likelihood:
     Args:
         points: the observed points, of shape (n, 2), in metres.
         resolution: the side of a cell, in metres.
-        smear_deviation: the standard deviation of the observed positions, in metres.
+        smear_deviation: the standard deviation of the points' positions, in metres.
     """
 
     def __init__(self, points: Floats, resolution: float, smear_deviation: float) -> None:
         self.resolution = resolution
         deviation = max(smear_deviation, resolution / 2)
-        margin = 3.1 * deviation + resolution  # wide enough that the outermost cells are 0
+        margin = 3.1 * deviation + resolution  # Wide enough that the outermost cells are 0.
         self.corner: Floats = points.min(axis=0) - margin
         size = np.ceil((points.max(axis=0) + margin - self.corner) / resolution).astype(int) + 1
         empty = np.ones((size[1], size[0]), dtype=bool)

@@ -1,4 +1,4 @@
-"""Laser scans for the mapper: points around the robot."""
+"""Laser scans for the mapper, converted to points around the robot."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from linkwright.navigation.slam.poses import Floats
 class PlanarScan:
     """A laser scan in the frame of the robot's base.
 
-    The robot's motion during a scan is ignored.
+    The robot's motion during the scan is ignored.
 
     Attributes:
         points: the ends of rays with a hit, of shape (n, 2), in metres.
@@ -40,7 +40,7 @@ def planar_scan(
     """Convert the ranges of a laser to points.
 
     As in Karto, a range that is not measured (NaN, infinite, 0, outside the laser's own limits) is ignored, and a range
-    beyond the mapper's maximum marks the ray up to it as free.
+    beyond the mapper's maximum marks the ray up to the maximum as free.
 
     Args:
         ranges: the ranges in metres, of shape (n,).
@@ -48,7 +48,7 @@ def planar_scan(
         limits: the minimum and maximum range that the laser measures, in metres.
         cut_off: the mapper's minimum and maximum range, in metres.
         laser: the rotation matrix, of shape (3, 3), and position, of shape (3,), of the laser in the frame of the base;
-            it may be mounted upside down.
+            the laser may be mounted upside down.
         stamp_ns: the time of the measurement, in nanoseconds.
     """
     with np.errstate(invalid="ignore"):

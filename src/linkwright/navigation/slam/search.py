@@ -1,4 +1,4 @@
-"""Search for the pose in a window at which a scan fits a reference best, by branch and bound.
+"""Search by branch and bound for the pose at which a scan fits a reference best.
 
 The search is that of Olson ("Real-Time Correlative Scan Matching", ICRA 2009) with the branch and bound of Hess et al.
 ("Real-Time Loop Closure in 2D LIDAR SLAM", ICRA 2016): a block of positions is rated by an upper bound of the responses
@@ -27,7 +27,7 @@ _BLOCKS = 3
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Search:
-    """A search window of poses, and its penalties.
+    """A search window of poses, and the penalties for distance from its centre.
 
     Names and meanings are those of Karto's parameters.
 
@@ -37,10 +37,11 @@ class Search:
         smear_deviation: the standard deviation of a reading's position, in metres.
         angle_offset: half the window of angles, in radians.
         angle_resolution: the resolution of angles, in radians; refined if it would skip cells at the farthest points.
-        distance_variance_penalty: in square metres; a smaller value keeps the pose nearer to the expected one.
-        angle_variance_penalty: in square radians; the same for the angle.
-        minimum_distance_penalty: the minimum factor of a response for its distance; 1 for no penalty.
-        minimum_angle_penalty: the same for the angle.
+        distance_variance_penalty: the variance of the penalty for distance, in square metres; a smaller value keeps the
+            pose nearer to the expected one.
+        angle_variance_penalty: the variance of the penalty for angles, in square radians.
+        minimum_distance_penalty: the minimum factor by which the distance reduces a response; 1 for no penalty.
+        minimum_angle_penalty: the minimum factor by which the angle reduces a response.
     """
 
     dimension: float = 0.5
@@ -55,13 +56,13 @@ class Search:
 
     @property
     def cell(self) -> float:
-        """The resolution of the search in metres; half the smear suffices before the refinement."""
+        """The resolution of the search in metres, at least half the smear."""
         return max(self.resolution, self.smear_deviation / 2)
 
 
 @dataclass(slots=True, eq=False)
 class _Blocks:
-    """Blocks of positions: the angle, the first row and column, and the maximum response in each."""
+    """Blocks of positions: angles, first rows and columns, and upper bounds of the responses."""
 
     angle: NDArray[np.int64]
     row: NDArray[np.int64]
@@ -73,7 +74,7 @@ class _Blocks:
 
 
 class _Window:
-    """The poses around a guess."""
+    """The poses around a guess, which are rated in blocks."""
 
     def __init__(self, likelihood: Likelihood, points: Floats, guess: Floats, search: Search) -> None:
         self._likelihood, self._search = likelihood, search
@@ -92,7 +93,7 @@ class _Window:
         self._columns = np.floor(x / likelihood.resolution).astype(np.int32)
 
     def top(self) -> tuple[int, _Blocks]:
-        """Return the level of the largest blocks, and those blocks without bounds."""
+        """Return the level of the largest blocks, and these blocks with bounds of 0."""
         side = 2 * self.half + 1
         level = max(0, (side // _BLOCKS).bit_length() - 1)
         offsets = np.arange(-self.half, self.half + 1, 1 << level)
@@ -102,7 +103,7 @@ class _Window:
         return level, _Blocks(angle, row, column, np.zeros(len(angle)))
 
     def judge(self, blocks: _Blocks, level: int) -> None:
-        """Compute the bounds of blocks."""
+        """Set the upper bounds of blocks of a level."""
         grid, begin = self._likelihood.level(level)
         height, width = grid.shape
         flat = grid.ravel()
@@ -128,9 +129,9 @@ class _Window:
         return result
 
     def children(self, blocks: _Blocks, level: int) -> _Blocks:
-        """Return the quarters of blocks that are in the window.
+        """Return the quarters of blocks that are within the window, with bounds of 0.
 
-        `level` is the level of these quarters.
+        `level` is the level of the quarters.
         """
         side = 1 << level
         angle, row, column = (np.repeat(array, 4) for array in (blocks.angle, blocks.row, blocks.column))
@@ -141,7 +142,7 @@ class _Window:
 
 
 def best_pose(likelihood: Likelihood, points: Floats, guess: Floats, search: Search) -> Steps[tuple[Floats, float]]:
-    """Search for the best pose, in steps.
+    """Search a window for the pose with the highest response, in steps.
 
     Args:
         likelihood: the likelihood field of the earlier scans.
@@ -150,7 +151,7 @@ def best_pose(likelihood: Likelihood, points: Floats, guess: Floats, search: Sea
         search: the window.
 
     Returns:
-        The pose, of shape (3,), and its response with penalties.
+        The pose, of shape (3,), and its response, reduced by the penalties.
     """
     window = _Window(likelihood, points, guess, search)
     level, blocks = window.top()
@@ -184,7 +185,10 @@ def _judged(window: _Window, blocks: _Blocks, level: int) -> Steps[None]:
 
 
 def _descend(window: _Window, blocks: _Blocks, level: int) -> _Blocks:
-    """Return a good initial pose by descending greedily from the best block to its best quarter."""
+    """Return the pose found by descending greedily from the best block to its best quarter.
+
+    The pose is a block of one cell.
+    """
     index = int(np.argmax(blocks.bound))
     block = blocks.part(np.s_[index : index + 1])
     while level:

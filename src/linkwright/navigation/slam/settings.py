@@ -16,7 +16,7 @@ class MapperSettings:
         use_scan_matching: whether scans are matched to earlier scans; otherwise odometry alone is used.
         minimum_time_interval: the minimum time between two processed scans.
         minimum_travel_distance: how far the robot must move before a scan is processed.
-        minimum_travel_heading: or how far the robot must rotate.
+        minimum_travel_heading: the rotation after which a scan is processed even if the robot did not move that far.
         scan_buffer_size: the number of recent scans that a new scan is matched against.
         scan_buffer_maximum_scan_distance: the maximum distance of those scans from the new one.
         link_match_minimum_response_fine: the minimum response of a match that links scans.
@@ -27,10 +27,10 @@ class MapperSettings:
         loop_match_maximum_variance_coarse: the maximum variance of the position at which a loop is accepted, in square
             metres.
         loop_match_minimum_response_coarse: the minimum response of the search for a loop, 0 to 1.
-        loop_match_minimum_response_fine: the minimum response of the match that follows.
-        matching: the window in which a new scan is searched for.
-        loop: the window in which a loop is searched for.
-        use_response_expansion: whether to try larger angles if nothing fits.
+        loop_match_minimum_response_fine: the minimum response of the match that follows this search, 0 to 1.
+        matching: the search window for a new scan.
+        loop: the search window for a loop.
+        use_response_expansion: whether to search larger angles if no pose in the window fits.
     """
 
     use_scan_matching: bool = True

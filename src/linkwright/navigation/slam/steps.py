@@ -1,7 +1,7 @@
-"""Generators that do work in steps, between which a node can run other callbacks.
+"""Generators that do long work in steps, between which a node can run other callbacks.
 
 A function that takes long is a generator: it yields every few milliseconds, and returns its result. A caller that may
-block calls `finish`; other callers call ``next`` when they have time, or ``yield from`` it in their own generators.
+block calls `finish`; other callers call ``next`` when they have time, or ``yield from`` the generator in their own.
 """
 
 from __future__ import annotations
@@ -16,11 +16,7 @@ Steps = Generator[None, None, T]
 
 
 def finish(work: Steps[T]) -> T:
-    """Run all steps.
-
-    Returns:
-        The result of the work.
-    """
+    """Run all steps without pausing, and return the result of the work."""
     try:
         while True:
             next(work)

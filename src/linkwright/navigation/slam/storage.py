@@ -1,6 +1,6 @@
-"""Files of a pose graph with its scans, in place of slam_toolbox's serialised maps.
+"""Files that store a pose graph with its scans, in place of slam_toolbox's serialised maps.
 
-The file is a NumPy archive of plain arrays in Linkwright's own format: slam_toolbox writes the memory of its C++
+A file is a NumPy archive of plain arrays in Linkwright's own format: slam_toolbox writes the memory of its C++
 classes, serialised by Boost, which other programs cannot read.
 """
 
@@ -34,7 +34,7 @@ _LARGEST_FILE = 1 << 30
 
 
 def path_of(name: str) -> Path:
-    """Return the path of a graph's file, from a name that may lack the extension."""
+    """Return the path of a graph's file, with the extension added if the name lacks it."""
     return Path(name if name.endswith(ENDING) else name + ENDING)
 
 
@@ -67,7 +67,8 @@ def load_graph(mapper: Mapper, path: Path) -> None:
     """Load a graph into a mapper, without drawing it yet.
 
     Raises:
-        LinkwrightError: NAV501, the file does not exist, or is not a graph of Linkwright; the mapper is unchanged.
+        LinkwrightError: NAV501, the file does not exist, or does not contain a graph saved by Linkwright; the mapper is
+            unchanged.
     """
     try:
         data = read_file(path, _LARGEST_FILE)

@@ -1,1 +1,1 @@
-"""Substitutes for the navigation packages that launch files include: a prefix with their share directories."""
+"""Substitutes for the navigation packages that launch files include, with their share directories."""

@@ -1,6 +1,6 @@
-"""The common parts of nav2_bringup's launch files: servers, separate or composed, and their lifecycle manager.
+"""The common parts of nav2_bringup's launch files, which start servers and their lifecycle manager.
 
-The module uses the modules that launch files import, and runs where they do.
+The module is imported by launch files, and imports the same launch modules.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class Server:
         executable: the executable, which is also the default name of the node.
         plugin: the class of the node when it is composed.
         name: the node's name, if it differs from the executable's.
-        remappings: pairs of names.
+        remappings: pairs of the original and the new name.
     """
 
     package: str
@@ -52,12 +52,12 @@ class Server:
 
     @property
     def node_name(self) -> str:
-        """The node's name."""
+        """The node's name: `name`, or else the name of the executable."""
         return self.name or self.executable
 
     @property
     def is_here(self) -> bool:
-        """Whether Linkwright provides the server."""
+        """Whether Linkwright provides the executable."""
         from linkwright.nodes import EXECUTABLES
 
         return (self.package, self.executable) in EXECUTABLES
@@ -67,14 +67,14 @@ _MANAGER = Server("nav2_lifecycle_manager", "lifecycle_manager", "nav2_lifecycle
 
 
 def is_true(context: LaunchContext, name: str) -> bool:
-    """Return whether a launch configuration is true, in any common spelling."""
+    """Return whether a launch configuration is true, in any of the usual spellings."""
     return str(context.launch_configurations.get(name, "")).strip().lower() in _TRUE
 
 
 def configured_parameters(context: LaunchContext) -> ParameterFile:
-    """Return the launch's parameter file, for nodes in its ``namespace``.
+    """Return the file ``params_file`` with ``use_sim_time``, for nodes in ``namespace``.
 
-    It is ``params_file`` with the launch's ``use_sim_time``.
+    All three are launch configurations.
     """
     configurations = context.launch_configurations
     rewrites = {"use_sim_time": str(is_true(context, "use_sim_time"))}
@@ -92,8 +92,8 @@ def managed(
 ) -> list[Any]:
     """Return the actions that start servers and their lifecycle manager.
 
-    Servers that Linkwright lacks are started, too, so that the launch reports them as skipped; the manager does not
-    wait for them.
+    Servers that Linkwright does not provide are included, so that the launch reports them as skipped, but the manager
+    does not wait for them.
 
     Args:
         context: a context with the launch configurations of `ARGUMENTS` and ``params_file``.

@@ -1,9 +1,7 @@
-"""transform and relay_field of topic_tools.
-
-They compute messages by Python expressions from another topic's messages.
+"""transform and relay_field of topic_tools: compute messages with Python expressions.
 
 The expressions are not restricted, as in topic_tools, because the author of a command line or a launch file can run
-programs anyway. Names of message packages give access to their types (``std_msgs.msg.String``); other names are the
+programs anyway. Names of message packages give access to their types (``std_msgs.msg.String``). Other names are the
 modules that ``--import`` imports.
 """
 
@@ -43,7 +41,7 @@ class _Parser(argparse.ArgumentParser):
 
 
 class _ExpressionTool(SingleNode, ABC):
-    """A node that computes a message from each input message.
+    """The base class of nodes that compute a message from each input message.
 
     Raises:
         LinkwrightError: an argument (NODE432) or the expression (NODE434) is invalid.
@@ -73,7 +71,7 @@ class _ExpressionTool(SingleNode, ABC):
 
     @abstractmethod
     def _prepare(self) -> None:
-        """Compile the expression."""
+        """Compile the expressions from the command line."""
 
     @abstractmethod
     def _make(self, message: Any) -> Any:
@@ -130,9 +128,9 @@ class _ExpressionTool(SingleNode, ABC):
 
 
 class Transform(_ExpressionTool):
-    """The running transform node.
+    """The running transform node, which evaluates one expression for each message.
 
-    It computes messages by an expression over ``m``, the message or one of its fields.
+    In the expression, ``m`` is the message or one of its fields.
     """
 
     PROGRAM = "transform"
@@ -163,9 +161,9 @@ class Transform(_ExpressionTool):
 
 
 class RelayField(_ExpressionTool):
-    """The running relay_field node.
+    """The running relay_field node, which computes the fields of each message.
 
-    It computes fields by YAML whose texts are expressions over the message ``m``.
+    The fields are given as YAML, whose strings are expressions over the input message ``m``.
     """
 
     PROGRAM = "relay_field"
@@ -199,7 +197,7 @@ class RelayField(_ExpressionTool):
 
 
 class _Types:
-    """The message types of a package in an expression: ``std_msgs.msg.String``."""
+    """The message types of a package in an expression, such as ``std_msgs.msg.String``."""
 
     def __init__(self, package: str) -> None:
         self.msg = _Messages(package)
@@ -225,9 +223,9 @@ def _imported(name: str) -> Any:
 
 
 def _prepared(value: Any) -> Callable[[Any], Any]:
-    """Compile a YAML value.
+    """Compile a YAML value to a function of the input message.
 
-    A text is an expression, or a literal text if it is not a valid expression.
+    A string is an expression, or a literal string if it is not a valid expression.
     """
     if isinstance(value, dict):
         fields = {name: _prepared(compute) for name, compute in value.items()}

@@ -1,4 +1,4 @@
-"""mux and demux of topic_tools: forward one of several topics, or to one of several."""
+"""mux and demux of topic_tools: forward one of several inputs, or forward to one of several outputs."""
 
 from __future__ import annotations
 
@@ -17,7 +17,10 @@ NO_TOPIC = "__none"
 
 
 class _Switch(TopicTool):
-    """A tool with several topics, one of which is selected; services add, delete, list and select topics."""
+    """The base class of mux and demux, which select one of several topics.
+
+    Services add, delete, list and select topics.
+    """
 
     _KIND: ClassVar[str]
     """How the types of the services begin."""
@@ -59,7 +62,12 @@ class _Switch(TopicTool):
 
     @abstractmethod
     def _place(self, single: str, selected: str) -> None:
-        """Set `_input` and `_output` for the selected topic."""
+        """Set the topics `_input` and `_output` for a selection.
+
+        Args:
+            single: the topic on the side that has only one.
+            selected: the selected topic on the other side.
+        """
 
     @property
     @abstractmethod
@@ -68,7 +76,7 @@ class _Switch(TopicTool):
 
     @abstractmethod
     def _change(self, selected: str) -> None:
-        """Select another topic."""
+        """Replace the selected topic."""
 
     def _look(self) -> None:
         if self._selected == NO_TOPIC:
@@ -138,7 +146,7 @@ class _Switch(TopicTool):
 
 
 class Mux(_Switch):
-    """The running mux, which forwards the selected input topic.
+    """The running mux node, which forwards the selected input topic.
 
     Raises:
         LinkwrightError: the parameter ``input_topics`` is missing (NODE431) or empty (NODE433).
@@ -161,7 +169,7 @@ class Mux(_Switch):
 
 
 class Demux(_Switch):
-    """The running demux, which forwards to the selected output topic.
+    """The running demux node, which forwards to the selected output topic.
 
     Raises:
         LinkwrightError: the parameter ``output_topics`` is missing (NODE431) or empty (NODE433).

@@ -1,4 +1,4 @@
-"""relay, throttle, drop and delay of topic_tools: forward all or some messages, immediately or later."""
+"""relay, throttle, drop and delay of topic_tools: forward all or some messages, some with a delay."""
 
 from __future__ import annotations
 
@@ -14,7 +14,10 @@ from linkwright.nodes.topic_tools.tool import TopicTool
 
 
 class _InputToOutput(TopicTool):
-    """A tool with one input and one output; the output is named after the input by default."""
+    """The base class of tools with one input and one output.
+
+    By default, the name of the output is derived from the name of the input.
+    """
 
     SUFFIX: ClassVar[str]
 
@@ -35,7 +38,7 @@ class _InputToOutput(TopicTool):
 
 
 class Relay(_InputToOutput):
-    """The running relay, which forwards every message.
+    """The running relay node, which forwards every message.
 
     Raises:
         LinkwrightError: the parameter ``input_topic`` is missing (NODE431), or an argument is invalid (NODE432).
@@ -53,7 +56,7 @@ class Relay(_InputToOutput):
 
 
 class Throttle(_InputToOutput):
-    """The running throttle, which forwards a number of messages or bytes per second, and drops the rest.
+    """The running throttle node, which limits the messages or bytes per second and drops the rest.
 
     Raises:
         LinkwrightError: a parameter is missing (NODE431) or invalid (NODE433), or an argument is invalid (NODE432).

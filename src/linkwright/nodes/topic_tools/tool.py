@@ -1,7 +1,8 @@
-"""The base of topic_tools: an input whose type is taken from the graph, and an output.
+"""The base class of topic_tools' nodes, with an input whose type is taken from the graph, and an output.
 
-Differences from topic_tools 1.3: a change of the graph is noticed immediately instead of within 100 ms; a source that
-returns with another type is subscribed to again; and a stop is sent when the publisher of the last velocity is lost.
+Differences from topic_tools 1.3: changes of the graph are handled immediately instead of within 100 ms; the node
+subscribes again to a source that returns with another type; and a stop is sent when the publisher of the last velocity
+disappears.
 """
 
 from __future__ import annotations
@@ -21,14 +22,14 @@ from linkwright.nodes.standstill import VELOCITIES, send_stop
 
 
 class TopicTool(SingleNode, ABC):
-    """A node that forwards messages.
+    """The base class of nodes that forward messages.
 
-    It publishes while its input has a publisher, with the same type, reliability and durability. A subclass sets
+    The output has a publisher while the input has one, with the same type, reliability and durability. A subclass sets
     `_input` and `_output` in `_declare`.
 
     Attributes:
         USAGE: the usage text.
-        WORDS: the parameters that are set by command-line arguments, with their converters.
+        WORDS: the parameters that command-line arguments set, with their converters.
     """
 
     USAGE: ClassVar[str]
@@ -58,12 +59,12 @@ class TopicTool(SingleNode, ABC):
         super().close()
 
     def _options(self, options: NodeOptions, words: list[str]) -> NodeOptions:
-        """Return the options with the command-line arguments as parameters."""
+        """Return the options with parameters that are set by command-line arguments."""
         return options_from_words(options, words, self.WORDS, self.USAGE)
 
     @abstractmethod
     def _declare(self) -> None:
-        """Declare the parameters and read them."""
+        """Declare the parameters and store their values."""
 
     @abstractmethod
     def _receive(self, message: Any) -> None:
@@ -74,7 +75,7 @@ class TopicTool(SingleNode, ABC):
             self._publisher.publish(message)
 
     def _look(self) -> None:
-        """Create the publisher and the subscription for the current graph."""
+        """Create or destroy the publisher and the subscription to match the current graph."""
         sources = self._sources()
         if not sources:
             self._stop()
@@ -101,7 +102,7 @@ class TopicTool(SingleNode, ABC):
         return subscription
 
     def _stop_output(self, lost: EndpointInfo) -> None:
-        """Publish a stop for subscribers of forwarded velocities after their publisher was lost."""
+        """Publish a stop if the output is a velocity, after the input's publisher has disappeared."""
         if self._publisher is not None and self._publisher.type_name in VELOCITIES:
             send_stop(self._node, self._publisher, lost)
 

@@ -1,4 +1,4 @@
-"""Texts of the files of a new package that is built with CMake."""
+"""The contents of the files of a new package that is built with CMake."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def plain_cmake_lists(request: PackageRequest) -> str:
 
 
 def config(request: PackageRequest) -> str:
-    """Return ``<name>Config.cmake.in``, which ``find_package`` of other projects reads."""
+    """Return the content of ``<name>Config.cmake.in``, which ``find_package`` in other projects reads."""
     lines = [
         f"# Found by find_package({request.name}). It defines",
         f"#   {request.name}_INCLUDE_DIRS: folders with headers",
@@ -111,7 +111,7 @@ def config(request: PackageRequest) -> str:
 
 
 def config_version() -> str:
-    """Return ``<name>ConfigVersion.cmake.in``, which checks that this version is the requested one."""
+    """Return the content of ``<name>ConfigVersion.cmake.in``, which checks the requested version."""
     return """\
 set(PACKAGE_VERSION "@PROJECT_VERSION@")
 

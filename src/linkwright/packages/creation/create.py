@@ -1,7 +1,7 @@
 """Creation of new packages with the layout of ``ros2 pkg create`` (ROS 2 Humble).
 
-A request is checked and turned into a list of steps (folders and files with their texts). Then the steps are
-carried out.
+A request is checked and converted to a list of steps (folders and files with their contents), which are then carried
+out.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class Folder:
 
 @dataclass(frozen=True)
 class File:
-    """A file to write, relative to the package's folder; it is written silently if it is not announced."""
+    """A file to write, relative to the package's folder; `report` names it if it is announced."""
 
     path: Path
     text: str
@@ -47,7 +47,7 @@ class File:
 
 @dataclass(frozen=True)
 class Remark:
-    """A line of the report that is printed between the steps."""
+    """A line to report between other steps."""
 
     text: str
 
@@ -60,14 +60,14 @@ def create_package(request: PackageRequest, report: Callable[[str], None]) -> li
 
     Args:
         request: the package to create.
-        report: called with each line that ``ros2 pkg create`` prints, in its order.
+        report: called with each line that ``ros2 pkg create`` prints, in the same order.
 
     Returns:
         Warnings: about the name, the licence, and a node that was renamed.
 
     Raises:
-        LinkwrightError: PKG201 to PKG206 if the request cannot be fulfilled (then nothing is written), PKG207 if the
-            folder exists, PKG208 if a file cannot be written.
+        LinkwrightError: PKG201 to PKG206, the request is not valid, and nothing is written; PKG207, the folder exists;
+            PKG208, a file cannot be written.
     """
     findings = check_request(request)
     if has_errors(findings):
@@ -93,7 +93,7 @@ def create_package(request: PackageRequest, report: Callable[[str], None]) -> li
 
 
 def check_request(request: PackageRequest) -> list[Diagnostic]:
-    """Return all errors and advice about a request."""
+    """Return all errors and warnings about a request."""
     findings = check_package_name(request.name)
     if request.build_type == "ament_python" and request.name == "test":
         message = phrase(
@@ -144,7 +144,7 @@ def _check_license(identifier: str) -> list[Diagnostic]:
 
 
 def summary(request: PackageRequest) -> Iterator[str]:
-    """Yield the lines that announce the new package."""
+    """Yield the lines that describe the new package before it is created."""
     yield "going to create a new package"
     yield f"package name: {request.name}"
     yield f"destination directory: {request.destination.resolve()}"
@@ -174,7 +174,10 @@ def steps(request: PackageRequest) -> Iterator[Step]:
 
 
 def shown(path: Path) -> str:
-    """Format a path as ros2 prints it: below the current folder, it begins with a dot."""
+    """Format a path as ros2 prints it.
+
+    A path below the current folder begins with a dot.
+    """
     return str(path) if path.is_absolute() or path.parts[:1] == ("..",) else f"./{path}"
 
 

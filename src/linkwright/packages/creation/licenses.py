@@ -1,4 +1,4 @@
-"""Licences by SPDX identifier, with the texts for a new package's ``LICENSE``."""
+"""Licences by SPDX identifier, and their texts for the ``LICENSE`` of a new package."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ def known_licenses() -> list[str]:
 
 
 def license_text(identifier: str, *, year: int, holder: str) -> str | None:
-    """Return the text of a licence with its copyright line filled in; None for an unknown identifier.
+    """Return the text of a licence with its copyright line filled in, or None for an unknown identifier.
 
-    The Lesser GPL is a set of additional permissions to the GPL, so its text is followed by that of the GPL.
+    The Lesser GPL is a set of additional permissions to the GPL, so the text of the GPL follows its text.
     """
     if identifier not in known_licenses():
         return None

@@ -1,4 +1,4 @@
-"""Texts of the files of a new package that Python packages or all build types need."""
+"""The contents of the files of a new package, for Python packages and for all build types."""
 
 from __future__ import annotations
 
@@ -113,13 +113,13 @@ setup(
 
 
 def setup_cfg(request: PackageRequest) -> str:
-    """Return the text of ``setup.cfg``, which installs executables where ``ros2 run`` looks for them."""
+    """Return the text of ``setup.cfg``, which installs executables where ``ros2 run`` searches for them."""
     scripts = f"$base/lib/{request.name}"
     return f"[develop]\nscript_dir={scripts}\n[install]\ninstall_scripts={scripts}\n"
 
 
 def linter_test(linter: str) -> str:
-    """Return a test that runs one of ament's linters on the package."""
+    """Return the source of a test that runs one of ament's linters on the package."""
     return _LINTER_BODIES[linter]
 
 
@@ -142,7 +142,7 @@ def _text(value: str) -> str:
 def _build_tools(request: PackageRequest) -> tuple[str, ...]:
     if request.build_type != "ament_cmake":
         return ()
-    # With ament_cmake_ros, a library is built shared unless the user overrides it.
+    # ament_cmake_ros builds libraries as shared libraries unless the user overrides this.
     return ("ament_cmake_ros",) if request.library_name else ("ament_cmake",)
 
 

@@ -32,7 +32,7 @@ class PackageRequest:
     Attributes:
         destination: the folder in which the package's folder is created, as the user wrote it.
         license: an SPDX identifier or any other text; a ``LICENSE`` is written only for a known identifier.
-        dependencies: names for ``<depend>``.
+        dependencies: the names of packages for ``<depend>``.
         node_name: the name of an initial executable, or None.
         library_name: the name of an initial library, or None.
         year: the year in the copyright line of the ``LICENSE``.
@@ -52,7 +52,10 @@ class PackageRequest:
 
     @property
     def node(self) -> str | None:
-        """The executable's name, with a suffix if the library has the same name, since both become targets."""
+        """The executable's name, or None.
+
+        If the library has the same name, a suffix is added, because both are CMake targets.
+        """
         if self.node_name is not None and self.node_name == self.library_name:
             return f"{self.node_name}_node"
         return self.node_name

@@ -1,1 +1,1 @@
-"""The programs and Python modules of packages, and the environment that they run in."""
+"""The programs and Python modules of packages, and the environment of these programs."""

@@ -1,7 +1,7 @@
-"""Start of processes whose Python programs find ``rclpy`` and related modules.
+"""Start of processes whose Python programs can import ``rclpy`` and related modules.
 
-These are the installed modules or, without them, the stand-ins. The stand-ins are in a room above this one, so they
-register here how a process is started with them; see `linkwright.standins.activate`.
+The processes import the installed modules or, if there are none, the stand-ins. The stand-ins are in a room above this
+one, so they register here how to start a process that uses them; see `linkwright.standins.activate`.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ _python_command: Command | None = None
 
 
 def register_launcher(environment: Environment, python_command: Command) -> None:
-    """Register how processes are started.
+    """Register the functions that determine how processes are started.
 
     Args:
         environment: the function that changes the environment of a process.
@@ -29,7 +29,7 @@ def register_launcher(environment: Environment, python_command: Command) -> None
 
 
 def process_environment(base: Mapping[str, str]) -> dict[str, str]:
-    """Return the environment for a process, based on the environment of a launch file."""
+    """Return the environment of a process that starts from another environment."""
     return dict(base if _environment is None else _environment(base))
 
 

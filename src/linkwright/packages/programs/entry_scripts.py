@@ -1,7 +1,7 @@
 """Cached script files for entry points of unbuilt packages, which ``colcon build`` would install.
 
-A launch file may look up the path of an executable, and debuggers, shells and process lists expect a program with
-its own name. Therefore, an entry point becomes a real file.
+A launch file may search for the path of an executable, and debuggers, shells and process lists expect a program with
+its own name. Therefore, a script file is written for an entry point.
 """
 
 from __future__ import annotations
@@ -20,25 +20,27 @@ _LONGEST_INTERPRETER_LINE = 120
 
 
 def script_for(package: str, name: str, entry: EntryPoint, roots: Sequence[Path]) -> Path:
-    """Return the script file that runs an entry point; it is written again if it has changed.
+    """Return the script file that runs an entry point.
+
+    The file is written if it does not exist or its content has changed.
 
     Args:
         package: the name of the package.
         name: the name of the program.
-        entry: its entry point.
+        entry: the entry point of the program.
         roots: the folders to import modules from, the package's own first.
 
     Raises:
-        OSError: if the file cannot be written.
+        OSError: the file cannot be written.
     """
     return _kept(package, name, str(roots[0]), _script(entry, roots))
 
 
 def script_for_ours(package: str, name: str) -> Path:
-    """Return the script file that runs one of our own nodes.
+    """Return the script file that runs one of Linkwright's own nodes.
 
     Raises:
-        OSError: if the file cannot be written.
+        OSError: the file cannot be written.
     """
     lines = [
         *_interpreter_lines(),
@@ -88,5 +90,5 @@ def _interpreter_lines() -> list[str]:
     line = f"#!{interpreter}"
     if " " not in interpreter and len(line) < _LONGEST_INTERPRETER_LINE:
         return [line]
-    # The shell reads the second line as a command, and Python reads it as the beginning of a string.
+    # The shell runs the second line as a command, and Python reads it as the beginning of a string.
     return ["#!/bin/sh", f'\'\'\'exec\' "{interpreter}" "$0" "$@"', "' '''"]

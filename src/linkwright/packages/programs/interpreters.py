@@ -17,9 +17,9 @@ _ASK_SECONDS = 5.0
 
 
 def needs_our_interpreter(path: Path) -> bool:
-    """Return whether a script requires a Python version other than ours for which no ROS is installed.
+    """Return whether a script names a Python version other than this process's, and ROS is not installed.
 
-    The stand-ins for ROS's modules need compiled libraries, which exist for only one version of Python.
+    Linkwright's stand-ins for ROS modules need compiled libraries, which exist only for the version of this process.
     """
     interpreter = _interpreter_of(path)
     if interpreter is None or _has_ros_for_python():
@@ -28,7 +28,7 @@ def needs_our_interpreter(path: Path) -> bool:
 
 
 def interpreter_words(path: Path) -> list[str]:
-    """Return the words of a script's first line, an interpreter and optional arguments; empty otherwise."""
+    """Return the interpreter and its arguments in a script's first line; empty if there are none."""
     try:
         with path.open("rb") as file:
             first = file.readline(512)
@@ -38,7 +38,7 @@ def interpreter_words(path: Path) -> list[str]:
 
 
 def _interpreter_of(path: Path) -> str | None:
-    """Return the Python interpreter in a script's first line; None for other programs."""
+    """Return the Python interpreter that a script's first line names, or None for other programs."""
     words = interpreter_words(path)
     if words and Path(words[0]).name == "env":
         words = [word for word in words[1:] if not word.startswith("-")]

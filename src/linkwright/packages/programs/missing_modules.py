@@ -1,4 +1,4 @@
-"""Hints on where a missing Python module or name is: ROS package, PyPI distribution, or other module."""
+"""Hints on the provider of a missing Python module or name: a ROS package, PyPI, or another module."""
 
 from __future__ import annotations
 
@@ -79,15 +79,15 @@ _CANNOT_IMPORT = re.compile(r"cannot import name '([^']+)' from '([^']+)'")
 
 
 def missing_name(error: ImportError) -> tuple[str, str] | None:
-    """Return the missing name and the module that lacks it; None if the module itself is missing."""
+    """Return the name that cannot be imported and its module, or None if the module itself is missing."""
     found = _CANNOT_IMPORT.search(str(error))
     return None if found is None else (found[1], found[2])
 
 
 def where_it_is(error: ImportError) -> Phrase | None:
-    """Return a hint on other modules that define a missing name; None if this is not known.
+    """Return a hint on other modules that define a name that cannot be imported, or None.
 
-    Real modules, unlike stand-ins, do not provide this information.
+    Only Linkwright's stand-ins provide this information.
     """
     missing = missing_name(error)
     if missing is None:
@@ -99,7 +99,7 @@ def where_it_is(error: ImportError) -> Phrase | None:
 
 
 def provider_hint(module: str) -> Phrase:
-    """Return a hint on how to get a module that cannot be imported."""
+    """Return a hint on how to install a module that cannot be imported."""
     return known_provider_hint(module) or phrase(
         "install the Python package that provides '{module}', or add its ROS package to the workspace",
         module=module,

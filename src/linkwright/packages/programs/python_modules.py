@@ -1,7 +1,7 @@
 """Python modules of the packages in the workspace, for launch files that import them.
 
-In ROS a launch file may import the modules of every package that is built and sourced. Here, it may also import the
-modules of packages that exist only as sources, and of packages in install folders that are not sourced.
+In ROS, a launch file may import the modules of every package that is built and sourced. Here, a launch file may also
+import the modules of packages that exist only as sources, and of packages in install folders that are not sourced.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from linkwright.packages.programs.workspace_environment import python_folders
 
 
 def find_module(finder: PackageFinder, name: str, near: Path) -> ModuleSpec | None:
-    """Return the spec of a top-level module; None if no package has it.
+    """Return the spec of a top-level module, or None if no package contains the module.
 
     Args:
         finder: the finder of packages.
         name: the name of the module. The package with this name is searched first, then the importing package, then all
-            others, since many packages have a module ``scripts`` or ``utils``.
+            others, because many packages have a module ``scripts`` or ``utils``.
         near: the folder of the file that imports the module.
     """
     if name in NOT_FOR_PROGRAMS:
@@ -31,7 +31,7 @@ def find_module(finder: PackageFinder, name: str, near: Path) -> ModuleSpec | No
     if own is not None:
         spec = _first(name, _folders(own, name))
         if spec is None and any((own / name).glob("*.py")):
-            spec = PathFinder.find_spec(name, [str(own)])  # its module folder has no __init__.py
+            spec = PathFinder.find_spec(name, [str(own)])  # the package's module folder has no __init__.py
         if spec is not None:
             return spec
     asking = enclosing_package(near)

@@ -1,7 +1,7 @@
-"""The programs that an unbuilt package would install, found without building it.
+"""The programs that an unbuilt package would install.
 
-They are read from ``setup.py``, ``setup.cfg`` and ``pyproject.toml`` (entry points and scripts) and from the
-``install(PROGRAMS ...)`` of a ``CMakeLists.txt``. Nothing is executed, with one exception: a ``setup.py`` that
+They are read from ``setup.py``, ``setup.cfg`` and ``pyproject.toml`` (entry points and scripts) and from
+``install(PROGRAMS ...)`` in ``CMakeLists.txt``. Nothing is executed, with one exception: a ``setup.py`` that
 computes its entry points is run in a separate process, with a ``setup()`` that only reports them.
 """
 
@@ -56,7 +56,7 @@ class SourcePrograms:
         entry_points: the entry points, by program name.
         scripts: the script files, by program name.
         compiled: the names of programs that must be built first.
-        is_complete: whether there are no other programs; False if the files that describe its build are missing, or use
+        is_complete: whether there are no other programs; False if the files that describe the build are missing or use
             unknown commands.
     """
 
@@ -82,7 +82,7 @@ def source_programs(folder: Path) -> SourcePrograms:
 
 
 def python_root(folder: Path, package: str) -> Path | None:
-    """Return the folder from which a source package's Python modules are imported; None if it has none."""
+    """Return the folder from which a source package's Python modules are imported, or None."""
     for candidate in (folder, folder / "src"):
         if (candidate / package / "__init__.py").is_file():
             return candidate
@@ -93,7 +93,7 @@ def python_root(folder: Path, package: str) -> Path | None:
 
 
 def module_file(root: Path, module: str) -> Path | None:
-    """Return the file of a module below a folder; None if it does not exist."""
+    """Return the file of a module below a folder, or None if there is no such module."""
     path = root.joinpath(*module.split("."))
     for candidate in (path.with_name(path.name + ".py"), path / "__init__.py"):
         if candidate.is_file():
@@ -102,7 +102,7 @@ def module_file(root: Path, module: str) -> Path | None:
 
 
 def _modules(folder: Path) -> Iterator[Path]:
-    """Yield the importable modules and packages in a folder, except those for building and testing."""
+    """Yield the importable modules and packages in a folder, except those used to build or test."""
     for path in (*folder.glob("*.py"), *(path.parent for path in folder.glob("*/__init__.py"))):
         if path.stem not in NOT_FOR_PROGRAMS:
             yield path
@@ -137,7 +137,7 @@ def _read_setup_py(found: SourcePrograms) -> None:
 
 
 def _computed_programs(folder: Path) -> tuple[list[str], list[str]]:
-    """Return the entry points and scripts that a ``setup.py`` reports when it runs; empty if it fails."""
+    """Run a ``setup.py``, and return the entry points and scripts that it reports; empty if it fails."""
     try:
         done = subprocess.run(  # noqa: S603 - the user runs a program of this very package
             [sys.executable, "-c", _ASK], cwd=folder, capture_output=True, timeout=_ASK_SECONDS, check=True, text=True

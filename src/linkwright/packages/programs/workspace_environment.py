@@ -15,11 +15,11 @@ _PYTHON = "PYTHONPATH"
 
 
 def workspace_environment(finder: PackageFinder, base: Mapping[str, str]) -> dict[str, str]:
-    """Return the environment as if the workspaces were built and their ``setup.bash`` sourced.
+    """Return an environment as if all workspaces were built and their ``setup.bash`` were sourced.
 
     Args:
         finder: the finder of packages.
-        base: the environment to extend; its own entries stay first.
+        base: the environment to extend; its own entries come first.
     """
     environment = dict(base)
     environment[START_VARIABLE] = os.pathsep.join(map(str, finder.starts))
@@ -28,7 +28,7 @@ def workspace_environment(finder: PackageFinder, base: Mapping[str, str]) -> dic
     folders: dict[str, None] = {}
     for name, share in finder.packages().items():
         if is_substitute(share):
-            continue  # programs with our finder find it, and others cannot use it
+            continue  # only programs with Linkwright's finder can use this package
         prefix = install_prefix(share)
         if not is_installed(share):
             root = python_root(share, name)
@@ -43,9 +43,9 @@ def workspace_environment(finder: PackageFinder, base: Mapping[str, str]) -> dic
 
 
 def python_folders(prefix: Path, package: str) -> Iterator[Path]:
-    """Yield the folders of an installed package's Python modules.
+    """Yield the folders that contain an installed package's Python modules.
 
-    They include links to its sources (``--symlink-install``).
+    With ``--symlink-install``, the environment hooks of the package name some of these folders.
     """
     for pattern in ("lib/python*/site-packages", "local/lib/python*/dist-packages"):
         yield from prefix.glob(pattern)

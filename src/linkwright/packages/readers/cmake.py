@@ -1,7 +1,6 @@
-"""Reader for the install rules of a ``CMakeLists.txt``, which works without CMake.
+"""Reader for the install rules of a ``CMakeLists.txt`` without CMake.
 
-Packages of descriptions, launch files, scripts and interfaces do not compile anything; CMake only copies their
-files.
+For packages of descriptions, launch files, scripts and interfaces, CMake compiles nothing and only copies files.
 """
 
 from __future__ import annotations
@@ -62,8 +61,8 @@ class PathPattern:
 
     Attributes:
         text: the pattern.
-        is_regex: whether it is a regular expression, which may match anywhere in the path.
-        is_excluded: whether it excludes its matches.
+        is_regex: whether the pattern is a regular expression, which may match anywhere in the path.
+        is_excluded: whether matching files are excluded.
     """
 
     text: str
@@ -74,7 +73,7 @@ class PathPattern:
         """Return whether the pattern matches a file or folder.
 
         Args:
-            path: the path starting from the package, beginning with a slash.
+            path: the path relative to the package, with a leading slash.
         """
         if self.is_regex:
             return bool(matched(self.text, path))
@@ -91,7 +90,7 @@ class CopyRule:
         kind: ``FILES``, ``PROGRAMS`` or ``DIRECTORY``.
         items: the sources, relative to the package; a trailing slash means the content of a folder.
         destination: the target folder, relative to the prefix; None if it is not known.
-        renamed: the new name of a single file, if it changes.
+        renamed: the new name of a single file, or None.
         patterns: the patterns for files and folders in a copied folder.
         only_matching: whether only files that match a pattern are copied.
         is_optional: whether the sources may be missing.
@@ -117,14 +116,18 @@ class CopyRule:
         return self._takes([f"/{folder.rstrip('/')}/{path}" for path in (*list(inside.parents)[:-1], inside)])
 
     def may_lack(self, item: str) -> bool:
-        """Return whether the build continues if one of the items is missing.
+        """Return whether the build continues if an item is missing.
 
-        CMake applies the patterns first: a missing item does not count as a folder, and ``FILES_MATCHING`` skips it.
+        CMake applies the patterns first: a missing item does not count as a folder, so ``FILES_MATCHING`` skips it.
         """
         return self.is_optional or not self._takes([f"/{item.rstrip('/')}"])
 
     def _takes(self, paths: Sequence[str]) -> bool:
-        """Return whether the patterns select the last of some paths; the others are its enclosing folders."""
+        """Return whether the patterns select a file.
+
+        Args:
+            paths: the paths of the folders around the file, outermost first, and the path of the file.
+        """
         if any(pattern.is_excluded and pattern.matches(path) for pattern in self.patterns for path in paths):
             return False
         included = (pattern for pattern in self.patterns if not pattern.is_excluded)
@@ -133,19 +136,19 @@ class CopyRule:
 
 @dataclass
 class CMakeFile:
-    """A ``CMakeLists.txt`` with its subdirectories and included files.
+    """The facts of a ``CMakeLists.txt``, with its subdirectories and included files.
 
     Attributes:
         project: the name of the project, or None.
-        copies: its copy rules.
-        targets: the names of the programs that it builds or installs.
-        interfaces: the interface files for which it generates code, relative to the package.
-        modules: the Python packages and modules that it installs, folders and files relative to the package.
-        hooks: the installed files that set variables where the package is used, relative to the prefix.
-        compiled: its compiled targets.
-        foreign: the commands of other packages that it calls, which may install further files.
-        unknown: the reasons why it may install further files.
-        is_ament: whether it belongs to an ament package.
+        copies: the install rules that copy files.
+        targets: the names of the programs that are built or installed as targets.
+        interfaces: the interface files for which code is generated, relative to the package.
+        modules: the installed Python packages and modules, as folders and files relative to the package.
+        hooks: the installed files that set environment variables, relative to the prefix.
+        compiled: the compiled targets.
+        foreign: the commands of other packages, which may install further files.
+        unknown: the reasons why further files may be installed.
+        is_ament: whether the package is an ament package.
     """
 
     source: SourceText
@@ -164,27 +167,27 @@ class CMakeFile:
 
     @property
     def is_complete(self) -> bool:
-        """Whether everything is known that the file installs, except the targets that it compiles."""
+        """Whether all installed files are known, except compiled targets."""
         return not self.unknown
 
     @property
     def directories(self) -> list[Argument]:
-        """The folders that the file installs, relative to the package."""
+        """The installed folders, relative to the package."""
         return [item for rule in self.copies if rule.kind == "DIRECTORY" for item in rule.items]
 
     @property
     def files(self) -> list[Argument]:
-        """The files that the file installs."""
+        """The installed files, relative to the package."""
         return [item for rule in self.copies if rule.kind != "DIRECTORY" for item in rule.items]
 
     @property
     def required(self) -> list[Argument]:
-        """The files and folders that must exist."""
+        """The files and folders that must exist for the build to succeed."""
         return [item for rule in self.copies for item in rule.items if not rule.may_lack(item.text)]
 
     @property
     def programs(self) -> dict[str, str]:
-        """The programs that are files of the package: name -> path relative to the package."""
+        """The installed programs that are files of the package: name -> path relative to the package."""
         return {
             rule.renamed or PurePosixPath(item.text).name: item.text
             for rule in self.copies
@@ -194,29 +197,29 @@ class CMakeFile:
 
     @property
     def executables(self) -> set[str]:
-        """The names of the programs that the file installs or builds."""
+        """The names of all programs that are built or installed."""
         return self.targets | set(self.programs)
 
     def span(self, argument: Argument) -> Span:
-        """Return the place of an argument."""
+        """Return the location of an argument."""
         return argument.source.span(argument.start, argument.end)
 
     def installed(self, package: Path) -> Iterator[InstalledFile]:
-        """Yield each copied file.
+        """Yield each installed file, except compiled targets.
 
         Args:
             package: the package's folder.
 
         Raises:
-            FileNotFoundError: if a file or folder does not exist; the exception contains its name.
+            FileNotFoundError: a file or folder does not exist; the exception contains its name.
         """
         return self._files(package, None)
 
     def moved(self, package: Path, share: str) -> Iterator[InstalledFile]:
-        """Yield the existing copied files whose paths change.
+        """Yield the installed files whose path in the share folder differs from the path in the package.
 
-        A path is unchanged if it is the same in the package and in the share folder. This is true for most folders,
-        which then need not be read. Some files that are copied to other folders are left out, too.
+        Folders whose files keep their paths are not read. Missing files, and some files that are installed outside the
+        share folder, are left out.
 
         Args:
             package: the package's folder.
@@ -270,14 +273,17 @@ class CMakeFile:
                     yield file._replace(destination=str(below / inside))
 
     def _make(self, source: str, destination: str, values: dict[str, str] | None = None, content: str = "") -> None:
-        """Record a file that the build generates and installs; repeated content is appended to the same file."""
+        """Record a file that the build generates and installs.
+
+        If the same file is recorded again, the content is appended.
+        """
         before = self._made.get(destination)
         text = None if values is not None else (before.content or "" if before else "") + content
         self._made[destination] = InstalledFile(source, destination, values, text)
 
 
 def _overlap(one: PurePosixPath, other: PurePosixPath) -> bool:
-    """Return whether one of two folders contains the other."""
+    """Return whether two folders are the same or one contains the other."""
     return one.is_relative_to(other) or other.is_relative_to(one)
 
 
@@ -286,7 +292,8 @@ def read_cmake(source: SourceText, package: Path | None = None) -> CMakeFile:
 
     Args:
         source: the text of the file.
-        package: the package's folder, to find subdirectories, included files and files that match patterns.
+        package: the package's folder, in which subdirectories, included files and matches of patterns are searched;
+            None if there is no folder.
     """
     file = CMakeFile(source)
     program = CMakeProgram(package)
@@ -344,7 +351,7 @@ def _in_build(word: str, program: CMakeProgram) -> str:
 
 
 def _read_hooks(file: CMakeFile, command: Command, program: CMakeProgram) -> None:
-    """Record the environment hooks, copied or generated from a template with the suffix ``.in``."""
+    """Record the environment hooks, which are copied or, from a template ``.in``, generated."""
     for word in command.words:
         if is_open(word):
             continue
@@ -359,7 +366,7 @@ def _read_hooks(file: CMakeFile, command: Command, program: CMakeProgram) -> Non
 
 
 def _read_resource(file: CMakeFile, command: Command) -> None:
-    """Record an entry of the resource index, and the plugin description that it refers to."""
+    """Record an entry of the resource index, and the plugin description that the entry refers to."""
     words, project = command.words, file.project.text if file.project else ""
     if command.name == "ament_index_register_resource":
         name, content = _following(words, "PACKAGE_NAME") or project, _following(words, "CONTENT") or ""
@@ -395,7 +402,7 @@ def _install(file: CMakeFile, command: Command) -> None:
 
 
 def _add(file: CMakeFile, rule: CopyRule, command: Command) -> None:
-    """Add a rule with those of its items that are known."""
+    """Add an install rule without the items that only CMake can evaluate."""
     known = tuple(
         Argument(within_package(item.text, command.folder), item.start, item.end, item.source)
         for item in rule.items
@@ -408,7 +415,7 @@ def _add(file: CMakeFile, rule: CopyRule, command: Command) -> None:
 
 
 def _following(words: Sequence[str], keyword: str) -> str | None:
-    """Return the word after a keyword; None if there is none."""
+    """Return the argument after a keyword, or None if there is none."""
     at = words.index(keyword) + 1 if keyword in words else len(words)
     return words[at] if at < len(words) else None
 

@@ -1,7 +1,7 @@
-"""The commands whose installed files are known: those of CMake and of ROS's build tools.
+"""The CMake commands whose installed files are known: those of CMake and of ROS's build tools.
 
-A package may define other commands, such as ``pal_register_modules`` of pal_module_cmake. Their definitions cannot
-be read here, so their installed files are not known.
+A package may define other commands, such as ``pal_register_modules`` of pal_module_cmake. Their definitions cannot be
+read here, so the files that they install are not known.
 """
 
 from __future__ import annotations
@@ -33,5 +33,9 @@ _OF_FAMILIES = lazy_pattern(
 
 
 def is_followed(command: str) -> bool:
-    """Return whether the installed files of a command, in lower case, are known."""
+    """Return whether the installed files of a command are known.
+
+    Args:
+        command: the name of the command in lower case.
+    """
     return command in _OF_CMAKE or bool(_OF_FAMILIES.fullmatch(command))

@@ -1,4 +1,4 @@
-"""Conditions of CMake's ``if(...)`` and ``while(...)``, which may be true, false or unknown."""
+"""Evaluation of CMake's conditions in ``if(...)`` and ``while(...)`` to true, false or unknown."""
 
 from __future__ import annotations
 
@@ -29,7 +29,12 @@ _LONGEST_SEARCH = 0.2
 
 @dataclass(frozen=True, slots=True)
 class Word:
-    """A word of a condition: its text with known variables substituted, and whether it is quoted."""
+    """A word of a condition.
+
+    Attributes:
+        text: the text with known variables substituted.
+        is_quoted: whether the word is quoted.
+    """
 
     text: str
     is_quoted: bool = False
@@ -46,8 +51,9 @@ class Condition:
 
     Args:
         words: the words of the condition.
-        variables: the known variables; ``MATCHES`` sets ``CMAKE_MATCH_...``.
-        is_there: the function that returns whether a path exists, or is a folder for ``IS_DIRECTORY``; None if unknown.
+        variables: the known variables; ``MATCHES`` sets ``CMAKE_MATCH_...`` in them.
+        is_there: called with an operator and a path; returns whether the path exists, or for ``IS_DIRECTORY`` whether
+            it is a folder, or None if that is not known.
     """
 
     words: Sequence[Word]
@@ -56,7 +62,7 @@ class Condition:
     _at: int = 0
 
     def answer(self) -> bool | None:
-        """Return whether the condition is true; None if it is not known."""
+        """Return whether the condition is true, or None if that is not known."""
         if len(self.words) > _MOST_WORDS:
             return None
         answer = self._either()
@@ -158,7 +164,10 @@ class Condition:
 
 
 def matched(pattern: str, text: str) -> list[tuple[str, list[str]]] | None:
-    """Return the matches of a CMake regular expression with their groups; None if Python rejects it."""
+    """Return all matches of a CMake regular expression, each with its groups.
+
+    The result is None if the expression is not valid or takes too long to match.
+    """
     import regex
 
     try:

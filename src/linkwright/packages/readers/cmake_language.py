@@ -1,10 +1,10 @@
 """An interpreter for the part of CMake's language that decides which files a package installs.
 
-Commands are yielded in the order in which CMake runs them. Variables, lists, texts, loops, functions and macros of
-the file, subdirectories and included files are followed. So are patterns of files and the conditions that can be
-evaluated here. Facts that only CMake knows, such as the variables of ``find_package``, are not: for such a
-condition, all branches are read, and a variable that two branches set differently has no value. A variable with an
-unknown value stays in the text as ``${...}``.
+Commands are yielded in the order in which CMake runs them. The interpreter evaluates variables, lists, texts, loops,
+functions and macros of the file, and runs subdirectories and included files. It also evaluates patterns of files, and
+conditions with known values. Facts that only CMake knows, such as the variables of ``find_package``, are unknown. If a
+condition is unknown, all branches are run, and a variable that two branches set differently has no value. A variable
+with an unknown value remains in the text as ``${...}``.
 """
 
 from __future__ import annotations
@@ -55,7 +55,14 @@ _FOUND = {"catkin_FOUND": "0", **dict.fromkeys(("ament_cmake_FOUND", "ament_cmak
 
 @dataclass(frozen=True, slots=True)
 class Argument:
-    """An argument of a command: its text with known variables substituted, its offsets, and its file."""
+    """An argument of a command.
+
+    Attributes:
+        text: the text with known variables substituted.
+        start: the character offset where the argument starts in the file.
+        end: the character offset where the argument ends, exclusive.
+        source: the file.
+    """
 
     text: str
     start: int
@@ -70,7 +77,7 @@ class Command:
     Attributes:
         name: the name in lower case.
         arguments: the arguments.
-        folder: the folder of its ``CMakeLists.txt``, relative to the package; empty for the package's own.
+        folder: the folder of the ``CMakeLists.txt``, relative to the package; empty for the package's own.
         is_conditional: whether the command is in a branch of an ``if`` whose condition is not known.
     """
 
@@ -86,7 +93,7 @@ class Command:
 
 
 class _TooMuchError(Exception):
-    """Raised when a file would keep CMake busy for too long, with the name of a command."""
+    """Raised with the name of a command when a file takes too many steps or its texts become too long."""
 
 
 @dataclass(slots=True)
@@ -98,14 +105,14 @@ class _Routine:
 
 @dataclass(slots=True)
 class CMakeProgram:
-    """An interpreter that runs a ``CMakeLists.txt`` as far as possible.
+    """An interpreter that runs a ``CMakeLists.txt`` without CMake.
 
     Args:
-        package: the folder of the package, to find subdirectories, included files and files that match patterns; None
-            if there is none.
+        package: the folder of the package, in which subdirectories, included files and matches of patterns are
+            searched; None if there is no folder.
 
     Attributes:
-        variables: name -> value; items of a list are separated by semicolons.
+        variables: name -> value; the items of a list are separated by semicolons.
         unknown: the commands, such as ``foreach``, whose effect is not known.
     """
 
@@ -129,7 +136,7 @@ class CMakeProgram:
     _routines: dict[str, _Routine] = field(default_factory=dict)
     _folder: str = ""
     _conditions: int = 0
-    _around: dict[str, int] = field(default_factory=dict)  # the condition depth around blocks that can be left
+    _around: dict[str, int] = field(default_factory=dict)  # leaving command -> nesting of unknown conditions
     _leaving: str = ""
     _for_parent: dict[str, str] = field(default_factory=dict)
     _depth: int = 0
@@ -150,7 +157,7 @@ class CMakeProgram:
 
     @contextmanager
     def _leavable_block(self, *commands: str) -> Iterator[None]:
-        """Define a block that these commands leave."""
+        """Run a block that the given commands, such as ``break``, leave."""
         before = self._around
         self._around = {**before, **dict.fromkeys(commands, self._conditions)}
         try:
@@ -184,7 +191,7 @@ class CMakeProgram:
             yield from self._run_foreach(words, body)
 
     def _run_branches(self, opening: Statement, body: Sequence[Statement]) -> Iterator[Command]:
-        """Yield the commands of the branch that is taken or, if this is unknown, of all possible branches."""
+        """Yield the commands of the first branch whose condition is true, and of unknown ones before it."""
         is_uncertain = False
         for condition, branch in branches(opening, body):
             answer = True if condition is None else self._holds(condition)
@@ -244,7 +251,10 @@ class CMakeProgram:
             yield from self._run_block(body)
 
     def _loop(self, words: list[str]) -> tuple[list[str], list[tuple[str, ...]]] | None:
-        """Return the names that a loop sets, and their values in each iteration."""
+        """Return the variables that a ``foreach`` loop sets, and their values in each iteration.
+
+        The result is None if the values are not known.
+        """
         if "IN" in words[1:] and words[words.index("IN", 1) :][1:2] == ["ZIP_LISTS"]:
             at = words.index("IN", 1)
             names, lists = words[:at], [items_of(self.variables.get(word, UNKNOWN)) for word in words[at + 2 :]]
@@ -318,7 +328,7 @@ class CMakeProgram:
     def _read_other(self, command: str, word: str) -> Iterator[Command]:
         is_folder = command == "add_subdirectory"
         if not is_folder and "/" not in word and not word.endswith(".cmake"):
-            return  # a module of CMake itself, which does not install anything
+            return  # a module of CMake itself, which installs nothing
         place = within_package(word, self._folder)
         path = (
             None
@@ -354,7 +364,7 @@ class CMakeProgram:
     # --- variables ---------------------------------------------------------------------------------------------------
 
     def _assign(self, name: str, words: list[str]) -> None:
-        """Apply a command that sets variables."""
+        """Set the variables that a command such as ``set`` or ``list`` changes."""
         if name == "project" and words:
             self.variables["PROJECT_NAME"] = self.variables["CMAKE_PROJECT_NAME"] = words[0]
             self.variables |= {f"{words[0]}_SOURCE_DIR": SOURCE, f"{words[0]}_BINARY_DIR": BUILD}
@@ -403,12 +413,12 @@ class CMakeProgram:
     def _change_list(self, words: list[str]) -> None:
         for target, value in list_command(words[0], words[1:], self._value).items():
             if words[0] in ("APPEND", "PREPEND"):
-                self.variables[target] = value  # in a branch, too: a possible item counts as an item
+                self.variables[target] = value  # also in a branch: a possible item counts as an item
             else:
                 self._set(target, value)
 
     def _matching(self, words: list[str], *, recursive: bool) -> str:
-        """Return the files that match ``file(GLOB...)``, as a CMake list."""
+        """Return the files that match the patterns of ``file(GLOB ...)``, as a CMake list."""
         base: str | None = None
         with_folders = not recursive
         patterns: list[str] = []
@@ -461,7 +471,7 @@ class CMakeProgram:
                 yield Argument(item, token.start, token.end, statement.source)
 
     def _substituted(self, token: Token) -> str:
-        """Return the text of an argument with the values of known variables substituted."""
+        """Substitute the values of known variables in an argument, and return the text."""
         text, room = token.text, _LONGEST_TEXT
 
         def value(match: re.Match[str]) -> str:
@@ -472,7 +482,7 @@ class CMakeProgram:
                 raise _TooMuchError(token.text)
             return found
 
-        for _ in range(_DEEPEST if token.has_variables else 0):  # nested references, such as ${${NAME}_FILES}
+        for _ in range(_DEEPEST if token.has_variables else 0):  # nested references: ${${NAME}_FILES}
             filled = _ENVIRONMENT.sub(lambda match: _environment(match[1]) or match[0], text)
             filled = _VARIABLE.sub(value, filled)
             if filled == text:
@@ -482,12 +492,15 @@ class CMakeProgram:
 
 
 def _environment(name: str) -> str | None:
-    """Return an environment variable as CMake sees it; only ROS variables are visible."""
+    """Return the value of one of ROS's environment variables, or None for any other variable."""
     return os.environ.get(name, ROS_VARIABLES[name]) if name in ROS_VARIABLES else None
 
 
 def _range(words: Sequence[str]) -> range:
-    """Return the numbers of ``foreach(i RANGE ...)``, including the last; empty for non-integers."""
+    """Return the numbers of ``foreach(i RANGE ...)``, including the last.
+
+    The result is empty if an argument is not an integer or the range is too long.
+    """
     try:
         numbers = [int(word) for word in words]
     except ValueError:
@@ -497,18 +510,24 @@ def _range(words: Sequence[str]) -> range:
 
 
 def _globbed(package: Path, pattern: str, *, recursive: bool) -> Iterable[Path]:
-    """Return the paths in a package that match a CMake pattern, in which two stars mean one."""
+    """Return the paths in a package that match a CMake pattern.
+
+    As in CMake, ``**`` has the same meaning as ``*``.
+    """
     folder, _, last = re.sub(r"\*+", "*", pattern).rpartition("/")
     if last in ("", "."):
-        return ()  # the pattern names a folder itself, which no command needs
+        return ()  # the pattern matches only the folder itself
     return (package / folder).rglob(last) if recursive else package.glob(posixpath.join(folder, last))
 
 
 def within_package(text: str, folder: str) -> str:
-    """Return the path in a command relative to the package, with its trailing slash if it has one.
+    """Convert a path in a command to a path relative to the package.
+
+    A trailing slash is preserved. Other absolute paths, generator expressions and paths in the build folder are
+    returned unchanged.
 
     Args:
-        text: the path as the command has it.
+        text: the path in the command.
         folder: the folder of the command, relative to the package.
     """
     if text.startswith(("/", "$<", BUILD)):

@@ -1,4 +1,4 @@
-"""Parser for CMake files: commands with their arguments, and the blocks that commands form."""
+"""Parser for CMake files, which returns commands with their arguments, and blocks of commands."""
 
 from __future__ import annotations
 
@@ -43,10 +43,10 @@ class Token:
 
     Attributes:
         text: the text without quotes.
-        start: the offset of its beginning.
-        end: the offset of its end.
-        is_quoted: whether it is in quotes or brackets, so that it is a single argument whatever its content.
-        has_variables: whether ``${...}`` in it is replaced.
+        start: the character offset where the argument starts.
+        end: the character offset where the argument ends, exclusive.
+        is_quoted: whether the argument is in quotes or brackets, so that a list in it is not split.
+        has_variables: whether ``${...}`` in the text is replaced.
     """
 
     text: str
@@ -58,7 +58,13 @@ class Token:
 
 @dataclass(frozen=True, slots=True)
 class Statement:
-    """A command as it is written: its name in lower case, its arguments, and the file."""
+    """A command as it is written in a file.
+
+    Attributes:
+        name: the name in lower case.
+        tokens: the arguments.
+        source: the file.
+    """
 
     name: str
     tokens: tuple[Token, ...]
@@ -66,7 +72,10 @@ class Statement:
 
 
 def statements(source: SourceText) -> Iterator[Statement]:
-    """Yield the commands of a file in the order of the text; nested parentheses are arguments."""
+    """Yield the commands of a file in the order of the text.
+
+    Nested parentheses are treated as arguments.
+    """
     text = source.text
     at, name, depth = 0, "", 0
     tokens: list[Token] = []
@@ -100,9 +109,14 @@ def _argument(piece: re.Match[str]) -> Token:
 
 
 def end_of_block(commands: Sequence[Statement], at: int, name: str) -> int:
-    """Return where the block ends whose opening command precedes `at`.
+    """Return the index of the command that closes a block.
 
-    If it is not closed, this is the end of all commands.
+    If the block is not closed, return the number of commands.
+
+    Args:
+        commands: the commands.
+        at: the index after the command that opens the block.
+        name: the name of the command that opens the block.
     """
     depth = 1
     for index in range(at, len(commands)):
@@ -113,7 +127,7 @@ def end_of_block(commands: Sequence[Statement], at: int, name: str) -> int:
 
 
 def branches(opening: Statement, body: Sequence[Statement]) -> Iterator[tuple[Statement | None, Sequence[Statement]]]:
-    """Yield the branches of an ``if``: the command with the condition (None for ``else``) and the body."""
+    """Yield the branches of an ``if``: the command with the condition (None for ``else``), and the body."""
     condition: Statement | None = opening
     depth = start = 0
     for index, command in enumerate(body):

@@ -1,4 +1,7 @@
-"""CMake's commands on texts and lists: ``list``, ``string``, ``math``, ``get_filename_component``."""
+"""Evaluation of CMake's commands on texts and lists.
+
+The commands are ``list``, ``string``, ``math`` and ``get_filename_component``.
+"""
 
 from __future__ import annotations
 
@@ -27,11 +30,11 @@ _OPERATORS: dict[type[ast.operator], Callable[[int, int], int]] = {
 
 
 class _NotKnownError(Exception):
-    """Raised when the effect of a command is not known here."""
+    """Raised when the effect of a command cannot be evaluated without CMake."""
 
 
 def items_of(text: str) -> list[str]:
-    """Return the items of a list without empty ones."""
+    """Return the items of a CMake list, without empty items."""
     return [item for item in text.split(";") if item]
 
 
@@ -39,8 +42,8 @@ def list_command(what: str, words: Sequence[str], value_of: Callable[[str], str]
     """Return the variable that a command ``list(WHAT ...)`` sets, with its value.
 
     Args:
-        what: the first word of the command.
-        words: the other words.
+        what: the operation, which is the first argument of the command.
+        words: the other arguments.
         value_of: the function that returns the value of a variable.
     """
     if not words:
@@ -185,7 +188,7 @@ def _number(node: ast.expr) -> int:
 
 
 def part_of_name(path: str, part: str) -> str:
-    """Return the part of a path that ``get_filename_component`` returns."""
+    """Return the part of a path that ``get_filename_component`` extracts."""
     name = posixpath.basename(path)
     parts = {
         "NAME": name,
@@ -202,7 +205,7 @@ def part_of_name(path: str, part: str) -> str:
 
 
 def version_variables(words: Sequence[str]) -> dict[str, str]:
-    """Return the version variables that ``project(...)`` sets; empty strings without a version."""
+    """Return the version variables that ``project(...)`` sets, with empty values if there is no version."""
     at = words.index("VERSION", 1) + 1 if "VERSION" in words[1:] else len(words)
     version = words[at] if at < len(words) else ""
     numbers = [*version.split("."), *[""] * 4]

@@ -1,4 +1,4 @@
-"""Entry points in the files of a package's sources: lines ``name = module:attribute`` of a group."""
+"""Reader for entry points in the source files of a package: lines ``name = module:attribute`` of a group."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ class EntryPoint(NamedTuple):
     """A function that serves as a program.
 
     Attributes:
-        module: the full name of its module.
-        function: its name in the module, possibly with dots.
+        module: the full name of the function's module.
+        function: the name of the function in the module, which may contain dots.
     """
 
     module: str
@@ -34,7 +34,7 @@ class EntryPoint(NamedTuple):
 
 
 def in_setup_py(text: str, group: str) -> list[str]:
-    """Return the lines of a group in any dictionary of a ``setup.py``, without running it."""
+    """Return the lines of a group in any dictionary of a ``setup.py``, which is not run."""
     with suppress(SyntaxError):
         for node in ast.walk(ast.parse(text)):
             for key, value in zip(node.keys, node.values, strict=True) if isinstance(node, ast.Dict) else ():
@@ -65,7 +65,7 @@ def in_pyproject(text: str, group: str) -> list[str]:
 
 
 def in_metadata(text: str, group: str) -> list[str]:
-    """Return the lines of a group in the ``entry_points.txt`` of a build."""
+    """Return the lines of a group in the ``entry_points.txt`` that a build writes."""
     from configparser import ConfigParser, Error
 
     parser = ConfigParser(interpolation=None, delimiters=("=",))
@@ -85,7 +85,7 @@ def option_lines(text: str, section: str, option: str) -> list[str]:
 
 
 def text_of(path: Path) -> str:
-    """Return the text of a file; empty if it cannot be read."""
+    """Return the text of a file, or an empty text if the file cannot be read."""
     try:
         return path.read_text(encoding="utf-8", errors="replace")
     except OSError:

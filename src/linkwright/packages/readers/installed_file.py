@@ -1,4 +1,4 @@
-"""A file that a package installs, independent of its build file."""
+"""The record of a file that a package installs, for all kinds of build files."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ class InstalledFile(NamedTuple):
     Attributes:
         source: the source path, relative to the package.
         destination: the installed path, relative to the prefix.
-        values: the values of its placeholders, if ``configure_file`` fills them in; None if it is copied unchanged.
-        content: its content, if the build writes it; None if it is copied or generated from its source.
+        values: the values of placeholders that ``configure_file`` replaces; None if the file is copied unchanged.
+        content: the content that the build writes; None if the file is copied or generated from its source.
     """
 
     source: str
@@ -35,7 +35,7 @@ class InstalledFile(NamedTuple):
         """Return the content of a file that the build generates.
 
         Raises:
-            OSError: if its source cannot be read.
+            OSError: the source of the file cannot be read.
         """
         if self.content is not None:
             return self.content

@@ -1,4 +1,4 @@
-"""Reader for Python launch files, which uses the syntax tree without running it."""
+"""Reader for the syntax trees of Python launch files, which are not run."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class StartedNode:
-    """A ``Node`` of a launch file with its package and executable, each None if it is not known."""
+    """The package and executable of a ``Node`` in a launch file, each None if it is not known."""
 
     package: Place | None
     executable: Place | None
@@ -39,7 +39,7 @@ class StartedNode:
 
 @dataclass(frozen=True, slots=True)
 class SharedFile:
-    """A path in a share folder that a launch file composes."""
+    """A path in a share folder that a launch file constructs."""
 
     package: str
     path: str
@@ -48,19 +48,19 @@ class SharedFile:
 
 @dataclass
 class LaunchFile:
-    """A launch file.
+    """The facts of a Python launch file.
 
     Attributes:
         path: the path relative to the package.
-        error: the syntax error, if it is not valid Python.
+        error: the syntax error, or None if the file is valid Python.
         python: the parsed file, or None.
-        has_function: whether it defines ``generate_launch_description``, or imports names that may include it.
-        is_test: whether launch_testing or pytest runs it; these require other functions.
-        nodes: the nodes that it starts.
-        shares: the packages whose share folder it looks up.
-        paths: the complete paths in share folders that it composes.
-        imports: the packages that it imports from, with their places.
-        made: the files that it writes itself, as package and path.
+        has_function: whether the file may define ``generate_launch_description``.
+        is_test: whether launch_testing or pytest runs the file; such a file requires other functions.
+        nodes: the nodes that the file starts.
+        shares: the packages whose share folder the file uses.
+        paths: the complete paths in share folders that the file constructs.
+        imports: the packages that the file imports from, with the locations.
+        made: the files that the launch file itself writes, as package and path.
     """
 
     source: SourceText
@@ -77,12 +77,17 @@ class LaunchFile:
 
 
 def is_launch_file(path: str) -> bool:
-    """Return whether a file is named like a Python launch file."""
+    """Return whether a path has the name of a Python launch file."""
     return path.endswith(_ENDINGS)
 
 
 def read_launch_file(source: SourceText, path: str) -> LaunchFile:
-    """Read the facts of a launch file; `path` is relative to its package."""
+    """Read the facts of a launch file.
+
+    Args:
+        source: the text of the file.
+        path: the path relative to the package.
+    """
     facts = LaunchFile(source, path)
     try:
         python = facts.python = PythonFile(source)
@@ -104,7 +109,7 @@ def read_launch_file(source: SourceText, path: str) -> LaunchFile:
     facts.made = frozenset(
         (share_path.package, share_path.rest.strip("/")) for share_path in written if isinstance(share_path, SharePath)
     )
-    with suppress(RecursionError):  # a sum of a thousand terms; the paths in it are ignored
+    with suppress(RecursionError):  # raised for a sum of a thousand terms, whose paths are ignored
         _PathReader(python, facts).visit(python.tree)
     return facts
 
@@ -112,7 +117,7 @@ def read_launch_file(source: SourceText, path: str) -> LaunchFile:
 def _may_define_function(node: ast.stmt) -> bool:
     if isinstance(node, ast.ImportFrom) and any(alias.name == "*" for alias in node.names):
         return True
-    return _defines_function(node, FUNCTION) or isinstance(node, (ast.If, ast.Try))  # it may be defined inside
+    return _defines_function(node, FUNCTION) or isinstance(node, (ast.If, ast.Try))  # a branch may define it
 
 
 def _is_of_test(node: ast.stmt) -> bool:
@@ -143,7 +148,7 @@ def _read_imports(python: PythonFile, facts: LaunchFile) -> None:
 
 
 def _written(python: PythonFile) -> Iterator[ast.expr]:
-    """Yield the paths of files that are written."""
+    """Yield the expressions for the paths of files that are written."""
     for call in python.calls("open", owner=""):
         mode = call.args[1] if len(call.args) > 1 else argument_of(call, "mode")
         if call.args and _WRITING.intersection(python.text(mode) or ""):
@@ -163,7 +168,7 @@ def _place(python: PythonFile, node: ast.expr | None) -> Place | None:
 
 
 class _PathReader(ast.NodeVisitor):
-    """The visitor that finds complete paths in share folders, which are not part of longer paths."""
+    """Finds the paths in share folders that are not part of longer paths."""
 
     def __init__(self, python: PythonFile, facts: LaunchFile) -> None:
         self._python = python
@@ -174,7 +179,7 @@ class _PathReader(ast.NodeVisitor):
     def visit_Assign(self, node: ast.Assign) -> None:
         names = [target.id for target in node.targets if isinstance(target, ast.Name)]
         if any(name in self._used for name in names):
-            self._inside_path += 1  # the name is part of a longer path
+            self._inside_path += 1  # other paths begin with this name
             self.generic_visit(node)
             self._inside_path -= 1
         else:

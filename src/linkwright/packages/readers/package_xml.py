@@ -1,4 +1,4 @@
-"""Reader for ``package.xml`` (REP 149), with the places of its values."""
+"""Reader for ``package.xml`` (REP 149), which also returns the locations of values."""
 
 from __future__ import annotations
 
@@ -36,7 +36,10 @@ class Manifest:
         return self.document.root
 
     def text(self, tag: str) -> str | None:
-        """Return the text of the first element of a tag with blanks collapsed and stripped; or None."""
+        """Return the text of the first element with a tag, or None if there is no such element.
+
+        Whitespace is stripped at the ends and collapsed inside.
+        """
         element = self.root.first(tag)
         return None if element is None else " ".join(element.text().split())
 
@@ -47,7 +50,7 @@ class Manifest:
 
     @property
     def build_type(self) -> str | None:
-        """The text of ``<build_type>``, or None."""
+        """The text of ``<build_type>``, or None if the file does not declare it."""
         export = self.root.first("export")
         element = None if export is None else export.first("build_type")
         return None if element is None else element.text().strip()
@@ -67,5 +70,5 @@ class Manifest:
         return self.build_type == "catkin" or self.declares("catkin")
 
     def declares(self, package: str) -> bool:
-        """Return whether the file contains a package's name, as its own or in a dependency of any kind."""
+        """Return whether a name is the package's own name or the name of a dependency of any kind."""
         return package == self.name or any(dependency.name == package for dependency in self.dependencies)

@@ -1,6 +1,6 @@
-"""Evaluation of expressions in a Python file that are strings and paths, without running it.
+"""Evaluation of expressions for strings and paths in a Python file, which is not run.
 
-Only an expression whose value is certain gets a value: literals, names that are assigned once, joined paths, share
+An expression has a value only if the value is certain: literals, names that are assigned once, joined paths, share
 folders of packages, and patterns of file names. Every other value is `UNKNOWN`, and rules ignore it.
 """
 
@@ -28,7 +28,7 @@ UNKNOWN = UnknownType.UNKNOWN
 
 @dataclass(frozen=True, slots=True)
 class SharePath:
-    """The share folder of a package, followed by further text.
+    """The share folder of a package, or a path below it.
 
     Attributes:
         package: the name of the package.
@@ -41,11 +41,11 @@ class SharePath:
 
 @dataclass(frozen=True, slots=True)
 class Pattern:
-    """The files that a ``glob`` pattern matches.
+    """A ``glob`` pattern.
 
     Attributes:
         text: the pattern.
-        recursive: whether ``**`` in it matches any number of folders.
+        recursive: whether ``**`` in the pattern matches any number of folders.
     """
 
     text: str
@@ -69,8 +69,8 @@ class PythonFile:
         tree: the syntax tree.
 
     Raises:
-        SyntaxError: if the text is not valid Python.
-        ValueError: if the text contains a null byte, or is nested too deeply.
+        SyntaxError: the text is not valid Python.
+        ValueError: the text contains a null byte, or is nested too deeply.
     """
 
     def __init__(self, source: SourceText) -> None:
@@ -79,18 +79,18 @@ class PythonFile:
 
     @cached_property
     def _assigned(self) -> dict[str, ast.expr | None]:
-        """The expression that is assigned to each name; None for several assignments or complex ones."""
+        """Name -> the expression that is assigned to the name; None if there are several or the target is complex."""
         bindings: dict[str, ast.expr | None] = {}
         for node in ast.walk(self.tree):
             _note_bindings(node, bindings)
         return bindings
 
     def assigned(self, name: str) -> ast.expr | None:
-        """Return the expression assigned to a name, if the file assigns it exactly once."""
+        """Return the expression assigned to a name, or None if there is not exactly one assignment."""
         return self._assigned.get(name)
 
     def resolved(self, node: ast.expr) -> ast.expr:
-        """Return an expression or, for a name, the expression that is assigned to it."""
+        """Return the expression that is assigned to a name, and any other expression unchanged."""
         for _ in range(_DEEPEST):
             if not isinstance(node, ast.Name):
                 break
@@ -101,11 +101,11 @@ class PythonFile:
         return node
 
     def calls(self, *names: str, owner: str | None = None) -> Iterator[ast.Call]:
-        """Yield the calls of functions or classes, by the last part of their names, in text order.
+        """Yield the calls of functions or classes in the order of the text.
 
         Args:
-            names: the names of the functions.
-            owner: the part of the name before the last; None for any.
+            names: the last parts of the dotted names of the functions.
+            owner: the part of the dotted name before the last; None for any.
         """
         found = [
             node
@@ -117,30 +117,35 @@ class PythonFile:
         yield from sorted(found, key=lambda node: (node.lineno, node.col_offset))
 
     def offset(self, line: int, column: int) -> int:
-        """Return the character offset of a line (from 1) and a byte column (from 0) of the syntax tree."""
+        """Return the character offset of a position in the syntax tree.
+
+        Args:
+            line: the line, from 1.
+            column: the column as a byte offset in the line, from 0.
+        """
         text = self.source.line(line)
         characters = column if text.isascii() else len(text.encode()[:column].decode("utf-8", "replace"))
         return self.source.offset(line, characters + 1)
 
     def range(self, node: ast.expr | ast.stmt | ast.keyword | ast.alias) -> tuple[int, int]:
-        """Return the character offsets of a node, with the end exclusive."""
+        """Return the character offsets of the start and the end of a node, with the end exclusive."""
         start = self.offset(node.lineno, node.col_offset)
         if node.end_lineno is None or node.end_col_offset is None:
             return start, start + 1
         return start, self.offset(node.end_lineno, node.end_col_offset)
 
     def span(self, node: ast.expr | ast.stmt | ast.keyword | ast.alias) -> Span:
-        """Return the place of a node or, if it has several lines, of its first line."""
+        """Return the location of a node, or of its first line if the node has several lines."""
         start, end = self.range(node)
         line_end = self.source.text.find("\n", start)
         if 0 <= line_end < end:
             end = line_end
         return self.source.span(start, max(end, start + 1))
 
-    # values
+    # --- values ------------------------------------------------------------------------------------------------------
 
     def value(self, node: ast.expr | None, depth: int = 0) -> Value:
-        """Return the value of an expression."""
+        """Return the value of an expression, or `UNKNOWN` if the value is not certain."""
         if node is None or depth > _DEEPEST:
             return UNKNOWN
         if isinstance(node, ast.Constant):
@@ -158,7 +163,7 @@ class PythonFile:
         return UNKNOWN
 
     def text(self, node: ast.expr | None) -> str | None:
-        """Return the string that an expression evaluates to, or None."""
+        """Return the string that an expression evaluates to, or None if the value is not a known string."""
         value = self.value(node)
         return value if isinstance(value, str) else None
 
@@ -243,14 +248,17 @@ def _bind(target: ast.expr, value: ast.expr | None, bindings: dict[str, ast.expr
 def _parsed(text: str) -> ast.Module:
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # warnings about the user's text, such as an invalid escape
+            warnings.simplefilter("ignore")  # ignore warnings about the user's code, such as invalid escapes
             return ast.parse(text)
     except (RecursionError, MemoryError):
         raise ValueError(phrase("it is nested too deeply")) from None
 
 
 def called_name(node: ast.Call) -> str:
-    """Return the dotted name of the called function; a part that is not a name is empty."""
+    """Return the dotted name of the called function.
+
+    A part that is not a name is empty.
+    """
     parts: list[str] = []
     function: ast.expr = node.func
     while isinstance(function, ast.Attribute):
@@ -261,12 +269,12 @@ def called_name(node: ast.Call) -> str:
 
 
 def argument_of(node: ast.Call, name: str) -> ast.expr | None:
-    """Return the value of a named argument of a call, or None."""
+    """Return the expression for a keyword argument of a call, or None if the argument is not given."""
     return next((keyword.value for keyword in node.keywords if keyword.arg == name), None)
 
 
 def concatenated(values: Sequence[Value]) -> Value:
-    """Return the concatenation of the values."""
+    """Return the concatenation of values, or `UNKNOWN` if it is not known."""
     if not values:
         return ""
     first = values[0]
@@ -280,7 +288,7 @@ def concatenated(values: Sequence[Value]) -> Value:
 
 
 def joined(values: Sequence[Value]) -> Value:
-    """Return the path that has the values as its components."""
+    """Return the path whose components are the values, or `UNKNOWN` if it is not known."""
     if not values:
         return UNKNOWN
     path = values[0]

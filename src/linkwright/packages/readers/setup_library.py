@@ -1,6 +1,6 @@
-"""Functions that an interpreted ``setup.py`` may call to compose paths or list its package's files.
+"""Functions that an interpreted ``setup.py`` may call to construct paths or list its package's files.
 
-They do not access anything outside the package, open no file, and return no large results.
+These functions open no file, access nothing outside the package, and return no large results.
 """
 
 from __future__ import annotations
@@ -44,10 +44,10 @@ class NotKnownError(Exception):
 
 
 def bounded(value: Any) -> Any:
-    """Return a value that is not too large.
+    """Check the size of a value, and return the value.
 
     Raises:
-        NotKnownError: if it is too large.
+        NotKnownError: the value is too large.
     """
     if isinstance(value, str) and len(value) > _LONGEST_TEXT:
         raise NotKnownError
@@ -57,10 +57,10 @@ def bounded(value: Any) -> Any:
 
 
 def weight(value: Any, most: int) -> int:
-    """Return the size of a value up to a bound: its nested items, and a share for the length of texts.
+    """Return the size of a value up to a limit.
 
-    A list that contains another list twice, which contains another list twice and so on, is small in memory but endless
-    to print or compare.
+    The size counts nested items and, in part, the length of texts. A list that contains another list twice, which
+    contains another list twice and so on, is small in memory but practically endless to print or compare.
     """
     count, pending = 0, [value]
     while pending and count <= most:
@@ -77,10 +77,10 @@ def weight(value: Any, most: int) -> int:
 
 
 def formatted(template: str, *arguments: Any, **named: Any) -> str:
-    """Return ``template.format(...)`` if it produces no wide text and accesses no attributes.
+    """Return ``template.format(...)``.
 
     Raises:
-        NotKnownError: if it does.
+        NotKnownError: the template may pad texts to a large width, or accesses attributes.
     """
     if _WIDE.search(template) or "." in "".join(re.findall(r"\{[^}]*\}", template)):
         raise NotKnownError
@@ -88,10 +88,10 @@ def formatted(template: str, *arguments: Any, **named: Any) -> str:
 
 
 def percent(template: str, arguments: Any) -> str:
-    """Return ``template % arguments`` if it produces no wide text.
+    """Return ``template % arguments``.
 
     Raises:
-        NotKnownError: if it does.
+        NotKnownError: the template may pad texts to a large width.
     """
     if _WIDE.search(template):
         raise NotKnownError
@@ -102,7 +102,7 @@ class PackageLibrary:
     """The functions of ``os``, ``glob`` and ``pathlib``, limited to the folder of a package.
 
     Args:
-        folder: the folder, which is the working directory of its ``setup.py``.
+        folder: the folder of the package, which is also the working directory.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -142,10 +142,10 @@ class PackageLibrary:
         }
 
     def relative(self, path: Any) -> str:
-        """Return the path of a file in the package, relative to its folder, with slashes.
+        """Return the path of a file in the package, relative to the package's folder, with slashes.
 
         Raises:
-            NotKnownError: if the path is outside the package.
+            NotKnownError: the path is outside the package.
         """
         return self._real(path).relative_to(self._folder).as_posix()
 

@@ -1,7 +1,7 @@
-"""Reader for the files that a ``setup.py`` installs, which uses the syntax tree without running it.
+"""Reader for the syntax tree of a ``setup.py``, which returns the installed files.
 
-Each ``$(find PACKAGE)`` in sources reads one. For this reason, records of facts are named tuples or plain classes,
-here and in the modules that this one loads: Python creates such a class in a sixth of the time of a data class.
+A ``setup.py`` is read for each ``$(find PACKAGE)`` in sources. To save time, records of facts are named tuples or plain
+classes here and in the modules that this one loads: Python creates such a class in a sixth of the time of a data class.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from linkwright.packages.readers.python_values import Pattern, PythonFile, argum
 
 
 class SyntaxMistake(NamedTuple):
-    """The reason why a file is not valid Python, with the place."""
+    """The reason why a file is not valid Python, and its location."""
 
     message: str
     span: Span
@@ -30,10 +30,10 @@ class Installed(NamedTuple):
 
     Attributes:
         text: the file or pattern, relative to the package.
-        is_pattern: whether it is passed to ``glob``.
-        recursive: whether ``**`` in it matches any number of folders.
-        destination: the folder below the prefix to which it is installed, or None if that is not known.
-        span: the place where it is written.
+        is_pattern: whether the text is a pattern that is passed to ``glob``.
+        recursive: whether ``**`` in the pattern matches any number of folders.
+        destination: the destination folder, relative to the prefix, or None if it is not known.
+        span: the location of the text.
     """
 
     text: str
@@ -43,16 +43,16 @@ class Installed(NamedTuple):
     span: Span
 
     def files(self, package: Path) -> list[str]:
-        """Return the matching files of a package, as paths relative to it with slashes."""
+        """Return the matching files of a package, as paths relative to the package, with slashes."""
         if not self.is_pattern:
             return [self.text] if (package / self.text).exists() else []
-        # Path.glob is not used: its rules for hidden files and "**" differ from those of glob, which setup.py calls.
+        # glob is used as in setup.py: the rules of Path.glob for hidden files and "**" are different.
         found = glob(self.text, root_dir=package, recursive=self.recursive)  # noqa: PTH207
         return [name.replace("\\", "/") for name in found if (package / name).is_file()]
 
 
 class Program(NamedTuple):
-    """An executable: its name, the module and function that it runs, and the place of its definition."""
+    """An executable: its name, the module and function that it runs, and the location of its definition."""
 
     executable: str
     module: str
@@ -61,19 +61,19 @@ class Program(NamedTuple):
 
 
 class SetupFile:
-    """A ``setup.py``.
+    """The facts of a ``setup.py``.
 
     Attributes:
-        tree: the syntax tree, if the file is valid Python.
-        error: the syntax error, if the file is not valid Python.
-        call: whether it calls ``setup``.
-        name: the name of the package, with its place; None if it is not known.
+        tree: the syntax tree, or None if the file is not valid Python.
+        error: the syntax error, or None if the file is valid Python.
+        call: whether the file calls ``setup``.
+        name: the name of the package, with its location; None if it is not known.
         installed: the files in ``data_files``.
-        data_files_span: the place of ``data_files``, or else of the call of ``setup``.
-        is_complete: whether these are all data files that it installs.
-        packages: the Python packages that it names, with their places; None if it searches for them.
+        data_files_span: the location of ``data_files``, or else of the call of ``setup``.
+        is_complete: whether `installed` contains all data files.
+        packages: the listed Python packages, with their locations; None if the file searches for packages.
         entry_points: the executables.
-        entry_points_complete: whether these are all executables.
+        entry_points_complete: whether `entry_points` contains all executables.
     """
 
     def __init__(self, source: SourceText) -> None:
@@ -129,7 +129,7 @@ def read_setup(source: SourceText) -> SetupFile:
         facts.name = text, python.span(name)
     try:
         _DataFilesReader(python, facts).read(argument_of(call, "data_files"), call)
-    except RecursionError:  # lists that contain each other, or a thousand terms
+    except RecursionError:  # raised for lists that contain each other, or a thousand terms
         facts.is_complete = False
     _read_packages(python, facts, argument_of(call, "packages"))
     _read_entry_points(python, facts, argument_of(call, "entry_points"))
@@ -137,7 +137,7 @@ def read_setup(source: SourceText) -> SetupFile:
 
 
 def syntax_mistake(source: SourceText, error: SyntaxError | ValueError) -> SyntaxMistake:
-    """Return the reason why a text is not valid Python, with the place."""
+    """Return the reason why a text is not valid Python, and its location."""
     if not isinstance(error, SyntaxError):
         return SyntaxMistake(str(error), source.span(0))
     start = source.offset(error.lineno or 1, max(error.offset or 1, 1))
@@ -145,12 +145,12 @@ def syntax_mistake(source: SourceText, error: SyntaxError | ValueError) -> Synta
 
 
 class _DataFilesReader:
-    """The reader of ``data_files``."""
+    """Reads the entries of ``data_files`` into the facts of a ``setup.py``."""
 
     def __init__(self, python: PythonFile, facts: SetupFile) -> None:
         self._python = python
         self._facts = facts
-        self._names: set[str] = set()  # the names of lists whose entries are known
+        self._names: set[str] = set()  # the names of lists that were already read
 
     def read(self, node: ast.expr | None, call: ast.Call) -> None:
         self._facts.data_files_span = self._python.span(node if node is not None else call.func)

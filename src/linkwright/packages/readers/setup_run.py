@@ -1,8 +1,8 @@
 """An interpreter for a ``setup.py`` that computes its ``data_files`` with loops and functions.
 
-The file is not run in Python. The interpreter knows the necessary part of the language: assignments, loops,
-conditions, functions, and the library's functions in `linkwright.packages.readers.setup_library`. An unknown value
-is `_UNKNOWN`, and no decision may depend on it.
+Python does not run the file. The interpreter implements the necessary part of the language: assignments, loops,
+conditions, functions, and the library functions in `linkwright.packages.readers.setup_library`. An unknown value is
+`_UNKNOWN`, and no decision may depend on it.
 """
 
 from __future__ import annotations
@@ -58,18 +58,18 @@ _UNKNOWN = _Unknown()
 
 
 class _Named:
-    """A member of a module, identified by its full name."""
+    """A member of a module that is identified by its full name."""
 
     def __init__(self, name: str) -> None:
         self.name = name
 
 
 class _CannotFollowError(Exception):
-    """Raised when a value that is unknown or slow to compute decides how the file continues."""
+    """Raised when the further execution depends on a value that is unknown or takes too long to compute."""
 
 
 class _LeaveError(Exception):
-    """Raised to execute ``break``, ``continue``, or ``return`` with a value."""
+    """Raised to execute ``break``, ``continue``, or ``return``, with the returned value."""
 
     def __init__(self, kind: str, value: Any = None) -> None:
         super().__init__(kind)
@@ -78,7 +78,7 @@ class _LeaveError(Exception):
 
 
 class _SetupCalledError(Exception):
-    """Raised when ``setup`` is called, with the data files."""
+    """Raised with the data files when ``setup`` is called."""
 
     def __init__(self, data_files: Any) -> None:
         super().__init__()
@@ -86,11 +86,11 @@ class _SetupCalledError(Exception):
 
 
 def run_setup(tree: ast.Module, folder: Path) -> list[InstalledFile] | None:
-    """Return the files that a ``setup.py`` installs as ``data_files``, or None if it cannot be followed.
+    """Return the files that a ``setup.py`` installs as ``data_files``, or None if it cannot be interpreted.
 
     Args:
         tree: the syntax tree of the file.
-        folder: the folder of its package.
+        folder: the folder of the package.
     """
     library = PackageLibrary(folder)
     try:
@@ -181,7 +181,7 @@ class _Run:
         value = self._value(ast.BinOp(_loaded(node.target), node.op, node.value))
         before = self._value(_loaded(node.target))
         if isinstance(before, list) and isinstance(value, list):
-            before[:] = value  # change the list in place, for all other references to it
+            before[:] = value  # change the list in place, because other names may refer to it
         else:
             self._bind(node.target, value)
 
@@ -215,7 +215,7 @@ class _Run:
     # --- expressions -------------------------------------------------------------------------------------------------
 
     def _value(self, node: ast.expr) -> Any:
-        """Return the value of an expression; `_UNKNOWN` if it cannot be evaluated."""
+        """Return the value of an expression, or `_UNKNOWN` if it cannot be evaluated."""
         self._tick()
         try:
             value = bounded(self._evaluated(node))
@@ -240,7 +240,7 @@ class _Run:
     def _truth(self, node: ast.expr) -> bool:
         value = self._value(node)
         if value is _UNKNOWN:
-            raise _CannotFollowError  # the branch decides how the file continues
+            raise _CannotFollowError  # the next steps depend on this value
         return bool(value)
 
     def _items(self, value: Any) -> Iterator[Any]:
@@ -454,7 +454,7 @@ class _Run:
 
 
 def _loaded(target: ast.expr) -> ast.expr:
-    """Return the expression that reads the target of an assignment."""
+    """Return an expression that reads the target of an assignment."""
     return ast.Name(target.id, ast.Load()) if isinstance(target, ast.Name) else target
 
 

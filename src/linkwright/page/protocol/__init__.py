@@ -2,18 +2,19 @@
 
 Control messages are JSON objects with a ``type``; the TypeScript types in ``frontend/src/protocol/`` are generated from
 this package by ``tools/protocol_types.py``. Transforms are sent as one binary frame, packed by `pack_transforms`, and
-so is the content of displays, packed by `pack_data`; a frame that is too large for its connection is sent in chunks,
+so is the content of displays, packed by `pack_data`. A frame that is too large for its connection is sent in chunks,
 packed by `pack_piece`. Lengths are metres, angles radians, quaternions x, y, z, w, colours 0 to 1.
 
 The page opens one WebSocket at ``/ws`` (same origin, with the token in the query). `Hello` is sent first, then `Tree`,
 the `RobotScene` of every RobotModel, `ViewState`, `Joints`, `JointPositions`, `Diagnostics`, `FrameTable` and the last
-transforms; after that only changes are sent, and only the newest message of a kind is queued for a slow page. A binary
-frame whose revision differs from the last `FrameTable` must be ignored.
+transforms; after that only changes are sent. A binary frame whose revision differs from the last `FrameTable` must be
+ignored.
 
 Of the messages queued for a slow page, only the newest of each class is sent. For a class with ``NEWEST_OF``, the
 newest message is sent for each value of the fields named there.
 
 Property IDs are ``global/<name>`` or ``<display id>/<name>/<name>...``: the names of the rows on the path, joined by
-``/``. In a name, ``%`` is written as ``%25`` and ``/`` as ``%2F``. The page requests a change with `SetProperty` and
-shows it when `PropertyChanged` (or new rows) arrives; the response to a rejected value contains the current value.
+``/``. In a name, ``%`` is written as ``%25`` and ``/`` as ``%2F``. The page requests a change with `SetProperty`, and
+shows the new value when `PropertyChanged` (or new rows) arrives; the response to a rejected value contains the current
+value.
 """

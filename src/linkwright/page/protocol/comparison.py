@@ -1,4 +1,4 @@
-"""Two descriptions in one scene: their differences, and the links where they are shown."""
+"""The comparison of two descriptions in one scene: their differences, and the links to highlight."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Mark = Literal["added", "removed", "changed"]
 class ComparedRobot(Record):
     """A robot of the comparison: its RobotModel display, its name, and the links to highlight.
 
-    The display is empty if none shows the robot.
+    The display is empty if no display shows the robot.
     """
 
     display: str
@@ -22,7 +22,7 @@ class ComparedRobot(Record):
 
 
 class ComparedPlace(Record):
-    """A place in a text, 1-based: `path` for readers, and the file for the Source panel."""
+    """A position in a source text, 1-based: as text for users, and the file for the Source panel."""
 
     text: str
     file: str
@@ -33,8 +33,8 @@ class ComparedItem(Record):
     """A difference, as `linkwright diff` prints it.
 
     `property` is empty for a difference of the whole item; `old` and `new` are None for a value that a description does
-    not set. `element` is the link or joint where the difference is shown, empty if there is none, and `in_old` is
-    whether only the old description has that element.
+    not set. `element` is the link or joint where the difference is shown, or empty. `in_old` is true if only the old
+    description has that element.
     """
 
     subject: Literal["robot", "link", "joint", "extension"]

@@ -15,9 +15,9 @@ RowDetails = Literal["frame", "link", "joint", "effort"]
 
 
 class TopicOffer(Record):
-    """The topics offered for a row.
+    """The topics offered for a row: those with one of the types whose names contain one of the words.
 
-    They have one of the types and, if words are given, contain one of them in their names.
+    If there are no words, any name is offered.
     """
 
     messages: list[str]
@@ -28,12 +28,12 @@ class Property(Record):
     """A row of a property tree, as RViz shows it.
 
     `id` is unique in the page and stable for the lifetime of a display. Colours are ``#rrggbb``. A `group` has no
-    value; any other kind may have children too (``Line Style`` > ``Line Width``).
+    value; a row of any other kind may also have children (``Line Style`` > ``Line Width``).
 
-    A row with `details` represents the frame, link or joint of its name. The page knows its current pose, so it adds
-    its own read-only rows: RViz's ``Position``, ``Orientation`` and the like.
+    A row with `details` represents a frame, link or joint, whose name it has. The page adds read-only rows below it,
+    such as RViz's ``Position`` and ``Orientation``, because the page knows the current pose.
 
-    A `topic` without `topics` offers the topics that the display can be added for.
+    A `topic` without `topics` offers the topics that the display can show.
     """
 
     id: str
@@ -54,7 +54,7 @@ class Property(Record):
 class StatusRow(Record):
     """A row below a display's Status.
 
-    Its text is usually a phrase, which each page receives in its own language.
+    `text` is usually a phrase, which each page receives in its own language.
     """
 
     name: str
@@ -63,9 +63,9 @@ class StatusRow(Record):
 
 
 class Place(Record):
-    """A 1-based place in a source file, with the macro calls and includes that lead to it.
+    """A 1-based position in a source file, with the macro calls and includes that lead to it.
 
-    The calls and includes are ordered innermost first.
+    `trail` is ordered innermost first.
     """
 
     file: str
@@ -75,21 +75,24 @@ class Place(Record):
 
 
 class Display(Record):
-    """A display of the Displays panel. `cls` is RViz's class, such as ``rviz_default_plugins/Grid``.
+    """A display of the Displays panel.
+
+    `cls` is RViz's class, such as ``rviz_default_plugins/Grid``. `drawing` is the class that determines how the page
+    draws
+    the display: the display's own class or, for a display of another package, the class that it resembles.
 
     `group` is the ID of the display's group, a ``rviz_common/Group`` that precedes it. `enabled` is the display's own
     check box; the display is drawn if the check boxes of all enclosing groups are also on.
 
-    `drawing` is the class that determines how the page draws the display: the display's own class, or for a display of
-    another package, the class that it resembles.
-
-    `supported` is false for a class this program does not draw; such a display is kept and listed as unsupported. Rows
-    of particular classes:
+    `supported` is false for a class that this program does not draw; such a display stays in the file and is listed as
+    unsupported. Rows of particular classes:
 
     - RobotModel: a shape is drawn with the alpha of its colour, times ``Alpha``, times the link's ``Alpha`` below
-      ``Links``. A link's row is a ``bool`` (draw its shapes) if it has any, or else a ``group``.
+      ``Links``. A link's row is a ``bool`` (draw its shapes) if the link has shapes, or else a ``group``.
     - TF: a frame is drawn if it has a row below ``Frames`` and the row is on; frames excluded by the filters have no
-      row. ``Update Interval`` (seconds between updates, 0 for every frame) of both is applied by the page.
+      row.
+
+    The page applies the ``Update Interval`` (seconds between updates, 0 for every frame) of both classes.
     """
 
     id: str
@@ -114,7 +117,7 @@ class Tree(ServerMessage):
 
 
 class DisplayProperties(ServerMessage):
-    """All property rows of one display, sent again when they change.
+    """All property rows of one display, sent when rows appear or disappear.
 
     Examples are the links of a new robot and the frames of TF.
     """
@@ -126,9 +129,9 @@ class DisplayProperties(ServerMessage):
 
 
 class PropertyChanged(ServerMessage):
-    """A new value, set by any page or by the server.
+    """A new value of a property, set by any page or by the server.
 
-    Enable boxes are the property ``<display>/Enabled``.
+    The check box of a display is the property ``<display>/Enabled``.
     """
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("id",)
@@ -149,7 +152,7 @@ class DisplayStatus(ServerMessage):
 
 
 class SetProperty(PageMessage):
-    """The user edited a property."""
+    """A property value that the user has entered."""
 
     id: str
     value: PropertyValue
@@ -171,12 +174,12 @@ class Configuration(ServerMessage):
     """The configuration that the page shows.
 
     Attributes:
-        path: the path of its file on the server; None if it does not have one yet.
+        path: the path of the configuration's file on the server; None if it has no file yet.
         opened: the number of configurations opened so far; when it increases, earlier messages are about another file.
         unsaved: whether there are unsaved edits.
         undo: the edit that undo would revert, or None.
         redo: the edit that redo would repeat, or None.
-        own: whether the page has its own displays.
+        own: whether the page has its own configuration.
         recent: files opened or saved before, newest first.
     """
 
@@ -190,14 +193,14 @@ class Configuration(ServerMessage):
 
 
 class DisplayClass(Record):
-    """A class of displays that can be added, and the types of the topics that it shows."""
+    """A display class that can be added, and the message types that it shows."""
 
     cls: str
     messages: list[str]
 
 
 class TopicChoice(Record):
-    """A topic of the graph, its type, and the classes of displays that can show it, possibly none."""
+    """A topic of the graph, its message type, and the display classes that can show it, possibly none."""
 
     topic: str
     message: str
@@ -221,22 +224,25 @@ class Folder(ServerMessage):
 
 
 class ConfigurationText(ServerMessage):
-    """The file's text as it would be saved, and a name; response to `AskConfigurationText`."""
+    """The text of the configuration as it would be saved, and a file name for it.
+
+    Response to `AskConfigurationText`.
+    """
 
     name: str
     text: str
 
 
 class ConfigurationSaved(ServerMessage):
-    """A notice that the configuration was saved."""
+    """The notice that the configuration was saved to a path."""
 
     path: str
 
 
 class ConfigurationRefused(ServerMessage):
-    """The rejection of a page's request.
+    """The rejection of a page's request, with the reason.
 
-    With a question, the page may confirm it and repeat the request.
+    If there is a question, the page may repeat the request after the user has confirmed it.
     """
 
     message: str
@@ -246,7 +252,7 @@ class ConfigurationRefused(ServerMessage):
 
 # --- page to server ------------------------------------------------------------------------------------------------
 class AddDisplay(PageMessage):
-    """Add an enabled display of a class, optionally to a group, and optionally showing a topic."""
+    """A request to add an enabled display of a class, optionally to a group and for a topic."""
 
     cls: str
     name: str
@@ -255,26 +261,26 @@ class AddDisplay(PageMessage):
 
 
 class DuplicateDisplays(PageMessage):
-    """Add a copy after each of these displays."""
+    """A request to insert a copy of each of these displays after the original."""
 
     displays: list[str]
 
 
 class RenameDisplay(PageMessage):
-    """Rename a display."""
+    """A request to rename a display."""
 
     display: str
     name: str
 
 
 class RemoveDisplays(PageMessage):
-    """Remove displays with their contents."""
+    """A request to remove displays with their contents."""
 
     displays: list[str]
 
 
 class MoveDisplays(PageMessage):
-    """Move displays into a group, before one of its displays.
+    """A request to move displays into a group, before one of its displays.
 
     A group of None means the top level, and a display of None means the end.
     """
@@ -285,45 +291,51 @@ class MoveDisplays(PageMessage):
 
 
 class GroupDisplays(PageMessage):
-    """Put displays into a new group at the position of the first of them."""
+    """A request to move displays into a new group, at the position of the first of them."""
 
     displays: list[str]
     name: str
 
 
 class Undo(PageMessage):
-    """Undo the last edit of any page."""
+    """A request to undo the last edit that any page made to the configuration."""
 
 
 class Redo(PageMessage):
-    """Redo the edit that was last undone."""
+    """A request to redo the edit that was last undone."""
 
 
 class AskDisplayChoices(PageMessage):
-    """Ask for the classes of displays that can be added, the topics, and the displays that show them."""
+    """A request for `DisplayChoices`: the classes that can be added, and the topics that they can show."""
 
 
 class AskFolder(PageMessage):
-    """Ask for the contents of a folder of the server; None for the folder of the open file."""
+    """A request for the contents of a folder of the server; None for the folder of the open file."""
 
     path: str | None
 
 
 class NewConfiguration(PageMessage):
-    """Open RViz's default configuration; `discard` allows losing unsaved edits."""
+    """A request to open RViz's default configuration.
+
+    `discard` permits discarding unsaved edits.
+    """
 
     discard: bool
 
 
 class OpenConfiguration(PageMessage):
-    """Open a file on the server; `discard` allows losing unsaved edits."""
+    """A request to open a file on the server.
+
+    `discard` permits discarding unsaved edits.
+    """
 
     path: str
     discard: bool
 
 
 class LoadConfiguration(PageMessage):
-    """Open a file from the browser's machine, given its name and text."""
+    """A request to open a file from the browser's machine, with its name and text."""
 
     name: str
     text: str
@@ -331,11 +343,11 @@ class LoadConfiguration(PageMessage):
 
 
 class RevertConfiguration(PageMessage):
-    """Open the file again and discard the edits."""
+    """A request to open the current file again and discard the edits."""
 
 
 class SaveConfiguration(PageMessage):
-    """Save to the current or another file on the server, which becomes the configuration's file.
+    """A request to save to a file on the server, which becomes the configuration's file.
 
     Attributes:
         path: a path that ends in ``.rviz``; None for the current file.
@@ -347,7 +359,7 @@ class SaveConfiguration(PageMessage):
 
 
 class AskConfigurationText(PageMessage):
-    """Ask for the text of the file as it would be saved now, to store it on the browser's machine."""
+    """A request for the text of the configuration, to store it on the browser's machine."""
 
 
 PanelName = Literal["displays", "selection", "tool-properties", "views", "time", "transformation", "navigation"]
@@ -355,12 +367,12 @@ PanelName = Literal["displays", "selection", "tool-properties", "views", "time",
 
 
 class Panels(ServerMessage):
-    """The panels in the configuration.
+    """The open panels of a configuration.
 
     Attributes:
         opened: the number of configurations opened for this page's displays; when it changes, the page shows these
             panels.
-        origin: the name under which a page remembers a configuration that has no file.
+        origin: the name under which the browser stores the panels of a configuration that has no file.
         shown: the panels that are open, in the order of the file; None if the file does not list panels.
     """
 
@@ -370,6 +382,6 @@ class Panels(ServerMessage):
 
 
 class ShowPanels(PageMessage):
-    """The user opened or closed a panel; the file stores the list of open panels."""
+    """The panels that are open after the user has opened or closed one; the file stores them."""
 
     shown: list[PanelName]

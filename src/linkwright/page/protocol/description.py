@@ -11,7 +11,10 @@ from linkwright.page.protocol.message import PageMessage, Record, ServerMessage
 
 
 class ArgumentChoice(Record):
-    """Argument values that some caller uses together; `label` contains those that differ from the other choices."""
+    """An argument set that some caller of the file uses.
+
+    `label` contains the values that differ from the other choices.
+    """
 
     label: str
     values: dict[str, str]
@@ -61,10 +64,10 @@ class SourceRange(Record):
 
 
 class Written(Record):
-    """Where an element is written: in the expanded text, and in its file, with the calls in between.
+    """The positions of an element: in the expanded text and in its file, with the calls in between.
 
-    `origin` is None if only the place in the expanded text is known. `calls` lists macro calls and includes, innermost
-    first; if there are very many, the outermost ones are omitted.
+    `origin` is None if only the position in the expanded text is known. `calls` lists macro calls and includes,
+    innermost first; if there are very many, the outermost ones are omitted.
     """
 
     expanded: SourceRange | None
@@ -73,7 +76,7 @@ class Written(Record):
 
 
 class LinkInertia(Record):
-    """A link's mass in kg and centre of mass in the link's frame, m.
+    """A link's mass in kg, and its centre of mass in the link's frame in metres.
 
     `box` has the edge lengths, m, of the uniform box with the same inertia, and `quaternion` is the box's orientation
     in the link. `box` is empty if no body can have this inertia.
@@ -86,7 +89,7 @@ class LinkInertia(Record):
 
 
 class LinkDetails(Record):
-    """A link as described; `frame` is the name of its frame in tf."""
+    """A link of the description; `frame` is the name of the link's tf frame."""
 
     name: str
     frame: str
@@ -104,11 +107,10 @@ class JointMimic(Record):
 
 
 class JointDetails(Record):
-    """A joint as described; SI units.
+    """A joint of the description, in SI units.
 
-    The origin is in the parent's frame, and the unit axis in the joint's frame.
-
-    A value that is not set or not finite is None.
+    The origin is in the parent's frame, and the unit axis in the joint's frame. A value that is not set or not finite
+    is None.
     """
 
     name: str
@@ -164,7 +166,7 @@ class DescriptionChanged(ServerMessage):
 class DescriptionText(ServerMessage):
     """The text of a file of a description, or the expanded text if `file` is empty.
 
-    The text is None for a file that is not part of the description.
+    The text is None for a file that does not belong to the description or cannot be read.
     """
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display", "file")
@@ -185,7 +187,7 @@ class InertiaFinding(Record):
 
 
 class InertiaFindings(ServerMessage):
-    """All implausible masses and inertias of a robot; response to `AskInertia`."""
+    """All findings about a robot's masses and inertias; response to `AskInertia`."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display",)
 
@@ -195,13 +197,13 @@ class InertiaFindings(ServerMessage):
 
 
 class AskDescription(PageMessage):
-    """The page shows links, joints or masses of a RobotModel display."""
+    """A request for the details of a RobotModel display's links and joints."""
 
     display: str
 
 
 class AskDescriptionText(PageMessage):
-    """The page shows a text of a description; an empty `file` means the expanded text.
+    """A request for a text of a description; an empty `file` means the expanded text.
 
     If `display` is empty, `file` is a file that a diagnostic refers to.
     """
@@ -211,13 +213,13 @@ class AskDescriptionText(PageMessage):
 
 
 class AskInertia(PageMessage):
-    """Ask for implausible masses, which the page marks; the server needs a while for the answer."""
+    """A request for the findings about masses and inertias, which the server takes a while to compute."""
 
     display: str
 
 
 class DiagnosticNote(Record):
-    """A note of a diagnostic."""
+    """An additional note of a diagnostic, with its position."""
 
     message: str
     file: str | None
@@ -242,6 +244,6 @@ class DiagnosticItem(Record):
 
 
 class Diagnostics(ServerMessage):
-    """The current findings about the description; an empty list clears them."""
+    """The current findings about the description; the list is empty if there are none."""
 
     items: list[DiagnosticItem]

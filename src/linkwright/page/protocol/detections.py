@@ -6,7 +6,7 @@ from linkwright.page.protocol.message import Bytes, DataContent, Floats
 
 
 class SolidBoxes(DataContent):
-    """Detection3D, BoundingBox3D and their arrays: boxes in the frame of the content.
+    """Boxes of the displays Detection3D, BoundingBox3D and their arrays, in the frame of the content.
 
     `poses` has shape (N, 7), x y z (metres) qx qy qz qw of the box centres; `sizes` (N, 3), metres; `colors` (N, 3),
     RGB; `scores` (N,), 0 to 1, and -1 if unknown; `names` contains the class names.
@@ -20,7 +20,7 @@ class SolidBoxes(DataContent):
 
 
 class ImageBoxes(DataContent):
-    """Detection2DArray: boxes over an image.
+    """Boxes of a Detection2DArray, drawn over an image.
 
     `boxes` has shape (N, 5): x and y of the centre, width and height in pixels of the image, and the rotation of the
     box in radians clockwise. The other fields are as in `SolidBoxes`.

@@ -9,7 +9,7 @@ from linkwright.page.protocol.views_and_tools import View
 
 
 class AskExport(PageMessage):
-    """The user exports the scene as a file; `view` is the page's camera."""
+    """A request to export the scene as a file; `view` is the page's view."""
 
     format: Literal["html", "glb"]
     view: View

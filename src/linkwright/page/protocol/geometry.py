@@ -12,10 +12,10 @@ class PointMarks(DataContent):
 
 
 class PoseMarks(DataContent):
-    """Pose, PoseArray, PoseWithCovariance, Odometry and Path: poses in the frame of the content.
+    """Poses of Pose, PoseArray, PoseWithCovariance, Odometry and Path, in the frame of the content.
 
     `poses` has shape (N, 7): x, y, z, qx, qy, qz, qw. `covariances` has shape (N, 36), the rows of the 6 x 6 matrix
-    over x, y, z and the rotations about them; (0,) without covariances.
+    over x, y, z and the rotations about them; the shape is (0,) if there are no covariances.
     """
 
     poses: Floats
@@ -23,23 +23,23 @@ class PoseMarks(DataContent):
 
 
 class ParticleMarks(DataContent):
-    """ParticleCloud: poses as in `PoseMarks`, and the weight of each, shape (N,)."""
+    """The particles of ParticleCloud: poses as in `PoseMarks`, and the weight of each, shape (N,)."""
 
     poses: Floats
     weights: Floats
 
 
 class PolygonLine(DataContent):
-    """Polygon: its corners in the frame of the content, shape (N, 3)."""
+    """The corners of Polygon in the frame of the content, metres, shape (N, 3)."""
 
     points: Floats
 
 
 class GridSurface(DataContent):
-    """GridMap: the centres of the cells in the frame of the content, row by row.
+    """The surface of GridMap: the centres of the cells in the frame of the content, row by row.
 
     `points` has shape (rows * columns, 3); `colors` (rows * columns, 4): red, green, blue, and 0 for a missing cell. If
-    `filled`, the surface is drawn; otherwise only lines are drawn.
+    `filled` is false, only lines are drawn.
     """
 
     rows: int
@@ -50,21 +50,24 @@ class GridSurface(DataContent):
 
 
 class RangeCone(DataContent):
-    """Range: a cone along x in the frame of the content, metres and radians; no cone if `range` is 0."""
+    """The cone of Range, along x in the frame of the content, metres and radians.
+
+    There is no cone if `range` is 0.
+    """
 
     range: float
     field_of_view: float
 
 
 class Screw(DataContent):
-    """TwistStamped, AccelStamped and Wrench: two vectors in the frame of the content, SI units."""
+    """The two vectors of TwistStamped, AccelStamped or Wrench, in the frame of the content, SI units."""
 
     linear: list[float]
     angular: list[float]
 
 
 class EffortRings(DataContent):
-    """Effort: a ring around each joint.
+    """The rings of Effort, one around each joint.
 
     `poses` has shape (N, 7), in the Fixed Frame, with z along the joint's axis. `efforts` and `limits` are in N m and
     have shape (N,).

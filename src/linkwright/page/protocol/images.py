@@ -25,11 +25,11 @@ class CameraModel(Record):
 
 
 class ImageFrame(DataContent):
-    """Image and Camera: one image.
+    """One image of Image or Camera.
 
     `width` and `height` are those of the message; `columns` and `rows` are the size of the data, which may be smaller.
-    The data contains 8-bit pixels row by row, or a file that browsers can read. `quality` is the quality (1 to 95) of a
-    WebP file that was made from the image for a slow connection, or else 0.
+    The data contains 8-bit pixels row by row, or a file that browsers can decode. `quality` is the quality (1 to 95) of
+    a WebP file that was made from the image for a slow connection, or else 0.
     """
 
     width: int
@@ -43,9 +43,9 @@ class ImageFrame(DataContent):
 
 
 class ImageSize(PageMessage):
-    """The size of an Image display's panel in pixels, 0 while it is hidden.
+    """The size of an Image display's panel in pixels, 0 while the panel is hidden.
 
-    Larger images need not be sent.
+    The page does not need images of a higher resolution.
     """
 
     display: str
@@ -54,7 +54,7 @@ class ImageSize(PageMessage):
 
 
 class OccupancyMap(DataContent):
-    """Map: the cells row by row from the origin's corner, each as the byte of its int8 value.
+    """The cells of Map, row by row from the origin's corner, each as the byte of its int8 value.
 
     `origin` is the pose of that corner in the frame of the message: x y z (metres) qx qy qz qw.
     """

@@ -89,10 +89,11 @@ FeedbackEvent = Literal["pose_update", "menu_select", "button_click", "mouse_dow
 
 
 class InteractiveControl(Record):
-    """A handle of an interactive marker.
+    """A control of an interactive marker.
 
-    Its axis is the x axis of `orientation` (x y z w, in the frame that the orientation mode selects). The poses of
-    `markers` are in the frame of the control, or in the frame of the interactive marker if `independent_orientation`.
+    The control's axis is the x axis of `orientation` (x y z w, in the frame that the orientation mode selects). The
+    poses of `markers` are in the frame of the control, or in the frame of the interactive marker if
+    `independent_orientation`.
     """
 
     name: str
@@ -114,7 +115,10 @@ class MarkerMenuEntry(Record):
 
 
 class InteractiveMarkerShape(DataContent, tag="interactive_marker"):
-    """An interactive marker in the frame of the content; `pose` is x y z qx qy qz qw, `scale` metres."""
+    """An interactive marker in the frame of the content.
+
+    `pose` is x y z qx qy qz qw, and `scale` is in metres.
+    """
 
     name: str
     description: str

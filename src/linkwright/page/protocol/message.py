@@ -1,7 +1,8 @@
-"""The base classes of messages, and their encoding as text and binary frames.
+"""The base classes of messages, and their encoding as text and as binary frames.
 
-Defining a message registers it, and its codec and the page's types are derived from it. All messages from pages are
-validated. The module of a message that few pages send can be imported when the first one arrives, see `define_later`.
+Defining a message class registers the class, and its codec and the page's types are derived from it. All messages from
+pages are validated. The module of a message that few pages send can be imported when the first such message arrives,
+see `define_later`.
 
 Binary frames to pages are little endian: transforms, content with large arrays, and chunks of these.
 
@@ -36,11 +37,11 @@ def _tag(name: str) -> str:
 
 
 class Record(Struct):
-    """A structured part of a message."""
+    """The base class of the structured parts of messages."""
 
 
 class ServerMessage(Struct, tag_field="type", tag=_tag):
-    """A message from the server to pages."""
+    """The base class of messages from the server to pages."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ()
     """Fields that identify the subject of a message: of messages that wait for a slow page only the newest for each of
@@ -48,14 +49,14 @@ class ServerMessage(Struct, tag_field="type", tag=_tag):
 
 
 class PageMessage(Struct, tag_field="type", tag=_tag, forbid_unknown_fields=True):
-    """A message from a page to the server.
+    """The base class of messages from a page to the server.
 
     Messages with missing, unknown or mistyped fields are rejected.
     """
 
 
 class DataContent(Struct, tag_field="kind", tag=_tag):
-    """A display's content with large arrays, packed by `pack_data`."""
+    """The base class of a display's content with large arrays, which `pack_data` packs."""
 
 
 def tag_of(message: Struct) -> str:
@@ -64,7 +65,7 @@ def tag_of(message: Struct) -> str:
 
 
 class BadMessageError(ValueError):
-    """Raised when a page sent data that is not a message of the protocol; the text gives the reason."""
+    """Raised when a page sent data that is not a message of the protocol; the message gives the reason."""
 
 
 def plain(value: Any) -> Any:
@@ -79,11 +80,13 @@ def plain(value: Any) -> Any:
 
 
 def encode(message: ServerMessage, language: str | None = None) -> str:
-    """Return a message as JSON; surrogates in names that are not in UTF-8 become question marks.
+    """Return a message as JSON.
+
+    Surrogates, which represent bytes that are not UTF-8 in file names, become question marks.
 
     Args:
         message: the message.
-        language: the language of its phrases; None to leave them untranslated.
+        language: the language of the message's phrases; None to leave them untranslated.
     """
     try:
         return _encoder(language).encode(message).decode()
@@ -104,9 +107,9 @@ def _plain_or_localized(value: Any, language: str | None) -> Any:
 
 
 def redundancy_key(message: ServerMessage) -> str:
-    """Return the key by which a message replaces earlier ones.
+    """Return the key by which a message replaces earlier ones in an outbox.
 
-    There is one key for each class, or for each value of its `NEWEST_OF`.
+    There is one key for each class, or for each value of the fields in the class's `NEWEST_OF`.
     """
     return "\n".join((tag_of(message), *(str(getattr(message, name)) for name in message.NEWEST_OF)))
 
@@ -115,7 +118,7 @@ def decode(text: str) -> PageMessage:
     """Return the message that a page sent.
 
     Raises:
-        BadMessageError: it is not JSON, its type is unknown, or its fields do not match the type exactly.
+        BadMessageError: the text is not JSON, its type is unknown, or its fields do not match the type exactly.
     """
     try:
         try:
@@ -135,11 +138,14 @@ def _decoded(text: str) -> PageMessage:
 
 @lru_cache(maxsize=1)
 def _decoder(_known: int) -> msgspec.json.Decoder[Any]:
-    """Return a decoder for all messages defined so far; cached until more messages are defined."""
+    """Return a decoder for all message classes defined so far.
+
+    The decoder is cached by the number of classes, so that a new class leads to a new decoder.
+    """
     by_tag: dict[str, type[PageMessage]] = {}
     for cls in PageMessage.__subclasses__():
         tag = str(cls.__struct_config__.tag)
-        if by_tag.get(tag, cls).__module__ == cls.__module__:  # another package cannot take over the name of a message
+        if by_tag.get(tag, cls).__module__ == cls.__module__:  # another package cannot replace a message class
             by_tag[tag] = cls
     return msgspec.json.Decoder(Union[tuple(by_tag.values())])  # noqa: UP007  # made of a tuple
 
@@ -160,7 +166,7 @@ def address_of(message: type) -> str:
 
 
 def define_later(address: str) -> None:
-    """Register a `PageMessage` whose module is imported when the first page sends one.
+    """Register a `PageMessage` class whose module is imported when the first such message arrives.
 
     Args:
         address: the address of the message class, as ``module:class``.
@@ -170,7 +176,7 @@ def define_later(address: str) -> None:
 
 
 def _define(text: str) -> bool:
-    """Import the class of a message from a page; return False if it is already defined or unknown."""
+    """Import the class of a page's message; return False if the class is already imported or unknown."""
     module = _LATER.pop(msgspec.json.decode(text, type=_Head).type, None)
     if module is None:
         return False
@@ -192,13 +198,13 @@ class Hello(ServerMessage):
 
 
 class ProgramIsLate(ServerMessage):
-    """Whether delays of this program, and not of the connection, dominate the page's response time."""
+    """Whether the program, and not the connection, causes most of the delay that the page observes."""
 
     late: bool
 
 
 class Received(PageMessage):
-    """The number of messages that the page has received.
+    """The number of messages that the page has received, by which it acknowledges them.
 
     It is sent after the first message and after each large one.
     """
@@ -219,11 +225,11 @@ class FrameTable(ServerMessage):
 
 
 def pack_transforms(revision: int, stamp: float, poses: NDArray[Any], ages: NDArray[Any]) -> bytes:
-    """Return a binary frame of transforms: header, poses, ages, little endian.
+    """Return a binary frame with the poses and ages of all frames.
 
     The header is four uint32 (kind 1, revision of the frame table, number of frames N, 0) and a float64 stamp in
-    seconds; then float32 N x 7 (x y z qx qy qz qw in the fixed frame, NaN where there is no transform) and N float32
-    (seconds since each frame's last transform; 0 for static frames).
+    seconds; then float32 N x 7 (x y z qx qy qz qw in the Fixed Frame, NaN where there is no transform) and N float32
+    (seconds since each frame's last transform; 0 for static frames). Everything is little endian.
 
     Args:
         revision: the revision of the `FrameTable` that names the rows.
@@ -242,9 +248,9 @@ def pack_transforms(revision: int, stamp: float, poses: NDArray[Any], ages: NDAr
 
 
 def unpack_transforms(frame: bytes) -> tuple[int, NDArray[np.float64]]:
-    """Return the revision and the poses of a `pack_transforms` frame.
+    """Return the revision and the poses, shape (N, 7), of a frame from `pack_transforms`.
 
-    The poses have shape (N, 7); the revision is -1 for other frames.
+    The revision is -1 for any other frame.
     """
     if len(frame) < _TRANSFORMS_HEADER.size or _TRANSFORMS_HEADER.unpack_from(frame)[0] != TRANSFORMS_KIND:
         return -1, np.empty((0, 7))
@@ -269,7 +275,7 @@ _EMPTY: dict[str, dict[str, list[Any]]] = {kind: {"$": [name, 0, 0]} for kind, (
 
 
 class DisplayForgotten(ServerMessage):
-    """Remove a display's content: the content with a key, or all of it."""
+    """The removal of a display's content: the content under a key, or all of it."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display", "key")
 
@@ -290,7 +296,7 @@ def pack_data(
 
     Args:
         display: the display's ID.
-        content: a dataclass of `DataContent`.
+        content: the content.
         key: the key of this content among the display's contents; newer content with the same key replaces it.
         frame: the frame that the content is in; empty for the Fixed Frame.
         pose: the pose of that frame in the Fixed Frame at the time of the content, x, y, z, qx, qy, qz, qw; None if the
@@ -328,7 +334,7 @@ class _Arrays:
         self._length = 0
 
     def put_aside(self, value: Any) -> Any:
-        """Add an array and return its placeholder in the header; convert other values to plain ones."""
+        """Return the JSON form of a value: an array is added and replaced by its placeholder."""
         return self.put(value) if isinstance(value, np.ndarray) else plain(value)
 
     def put(self, array: NDArray[Any]) -> dict[str, list[Any]]:
@@ -370,7 +376,7 @@ def pack_piece(frame: bytes, number: int, offset: int, size: int) -> bytes:
 
     Args:
         frame: the complete frame.
-        number: a number shared by all chunks of the frame, and different for the next frame.
+        number: the number of the transfer, which all chunks of the frame share and which differs for the next frame.
         offset: the offset of the chunk, bytes.
         size: the maximum size of the chunk, bytes.
     """

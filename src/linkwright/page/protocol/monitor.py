@@ -1,8 +1,8 @@
 """The live panels: topics, plots, the node graph, parameters, the log and the teleop pad.
 
-A frame of a plot's samples is four uint32 (kind 3, number of series N, 0, 0); then for each series two uint32 (its ID,
-number of samples M) and 3 x M float64: the times of reception and the header stamps, both in seconds since the epoch
-(NaN without a header), and the values. Everything is little endian.
+A frame with the samples of plots is four uint32 (kind 3, number of series N, 0, 0); then for each series two uint32
+(its ID, number of samples M) and 3 x M float64: the times of reception and the header stamps, both in seconds since the
+epoch (NaN without a header), and the values. Everything is little endian.
 
 Parameter values are sent as texts, one for each element, which preserves 64-bit integers and infinities.
 """
@@ -21,7 +21,7 @@ from linkwright.page.protocol.message import PageMessage, Record, ServerMessage
 
 
 class TopicRow(Record):
-    """A topic of the graph; several `types` indicate an error of the nodes that use it."""
+    """A topic of the graph; several `types` mean that the nodes disagree about its type."""
 
     name: str
     types: list[str]
@@ -30,11 +30,10 @@ class TopicRow(Record):
 
 
 class TopicTraffic(Record):
-    """The traffic of a measured topic: Hz and bytes per second.
+    """The traffic of a measured topic: the rate in Hz, and bytes per second.
 
-    `error` is the reason why it cannot be measured or shown.
-
-    Both values are None until two messages have arrived.
+    Both values are None until two messages have arrived. `error` is the reason why the topic cannot be measured or
+    shown.
     """
 
     topic: str
@@ -82,7 +81,7 @@ class TopicMessage(ServerMessage):
 
 
 class WatchTopics(PageMessage):
-    """The topics to follow from now on: their list, the traffic of some, and the messages of some."""
+    """The topics that the page lists, measures and shows with their messages from now on."""
 
     listed: bool
     measured: list[str]
@@ -95,9 +94,9 @@ _SERIES = struct.Struct("<II")
 
 
 class PlotField(Record):
-    """A field that can be plotted, in the notation that follows the topic's name.
+    """A field that can be plotted, as the path that follows the topic's name.
 
-    `kind` is the type of its values.
+    `kind` is the type of the field's values.
     """
 
     path: str
@@ -105,7 +104,7 @@ class PlotField(Record):
 
 
 class PlotSeries(Record):
-    """A series that a page plots; the page chooses its ID, which is unique in the page."""
+    """A series that a page plots, with an ID that the page has chosen."""
 
     id: int
     topic: str
@@ -113,9 +112,9 @@ class PlotSeries(Record):
 
 
 class SeriesState(Record):
-    """The reason why a series has no values.
+    """The reason why a series cannot have values.
 
-    It is None if the series has values or is waiting for the first message.
+    The reason is None if the series has values or is waiting for its first message.
     """
 
     id: int
@@ -125,7 +124,7 @@ class SeriesState(Record):
 class TopicFields(ServerMessage):
     """The fields of a topic that can be plotted; response to `AskFields`.
 
-    They are sent again once array lengths are known.
+    The message is sent again when the lengths of arrays are known.
     """
 
     topic: str
@@ -141,20 +140,20 @@ class SeriesStates(ServerMessage):
 
 
 class AskFields(PageMessage):
-    """The user is choosing from the fields of a topic; None after the choice."""
+    """A request for the fields of a topic, from which the user is choosing; None after the choice."""
 
     topic: str | None
 
 
 class WatchSeries(PageMessage):
-    """All series that the page plots from now on, and how many seconds of the past it shows."""
+    """All series that the page plots from now on, and how many seconds of the past the page shows."""
 
     series: list[PlotSeries]
     seconds: float = 30.0
 
 
 def pack_samples(series: Sequence[tuple[int, NDArray[Any]]]) -> bytes:
-    """Return a binary frame of samples.
+    """Return a binary frame with the samples of plots; its layout is described in this module.
 
     Args:
         series: IDs, each with an array of shape (3, M): received (s), stamp (s), value.
@@ -175,7 +174,7 @@ class GraphTopic(Record):
 
 
 class NodeGraph(ServerMessage):
-    """All nodes and topics; sent when the panel opens and when they change."""
+    """All nodes and topics, sent when the panel is opened and after each change."""
 
     nodes: list[str]
     topics: list[GraphTopic]
@@ -204,7 +203,7 @@ ParameterKind = Literal[
 class ParameterRow(Record):
     """A parameter of a node.
 
-    `minimum`, `maximum` and `step` describe its range, as text; they are empty without a range.
+    `minimum`, `maximum` and `step` describe the parameter's range, as text; they are empty if it has no range.
     """
 
     name: str
@@ -219,15 +218,15 @@ class ParameterRow(Record):
 
 
 class ParameterNodes(ServerMessage):
-    """The full names of the nodes that offer their parameters."""
+    """The full names of the nodes that have parameter services."""
 
     nodes: list[str]
 
 
 class NodeParameters(ServerMessage):
-    """The parameters of a node, sorted by name; sent when it is watched and on every change.
+    """The parameters of a node, sorted by name, sent when the page selects the node and on every change.
 
-    `error` is the reason if the node does not answer.
+    `error` is the reason if the node does not respond.
     """
 
     node: str
@@ -236,7 +235,7 @@ class NodeParameters(ServerMessage):
 
 
 class ParameterResult(ServerMessage):
-    """The outcome of `SetParameter`; `reason` is given by the node."""
+    """The outcome of `SetParameter`; `reason` is the node's reason for a refusal."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("node", "name")
 
@@ -247,7 +246,7 @@ class ParameterResult(ServerMessage):
 
 
 class ParameterDump(ServerMessage):
-    """The text of a parameter file and its name; response to `DumpParameters`."""
+    """The text and the name of a parameter file; response to `DumpParameters`."""
 
     node: str
     file: str
@@ -256,14 +255,14 @@ class ParameterDump(ServerMessage):
 
 
 class WatchParameters(PageMessage):
-    """The parameters to follow from now on: the list of nodes, and the parameters of one node."""
+    """The requests of a page from now on: the list of nodes, and the parameters of one node."""
 
     listed: bool
     node: str | None
 
 
 class SetParameter(PageMessage):
-    """The user edited a parameter."""
+    """A parameter value that the user has entered."""
 
     node: str
     name: str
@@ -272,7 +271,7 @@ class SetParameter(PageMessage):
 
 
 class DumpParameters(PageMessage):
-    """Ask for the parameters of a node as a file."""
+    """A request for the parameters of a node as a file."""
 
     node: str
 
@@ -314,9 +313,9 @@ TwistKind = Literal["auto", "Twist", "TwistStamped"]
 
 
 class TeleopTarget(Record):
-    """The topic and type of a teleop pad.
+    """The topic and the message type of a teleop pad.
 
-    `auto` selects the type of the topic's subscribers, by default Twist.
+    `auto` selects the type of the topic's subscriptions, by default Twist.
     """
 
     topic: str
@@ -325,7 +324,7 @@ class TeleopTarget(Record):
 
 
 class TeleopState(ServerMessage):
-    """The state of a teleop pad: type, number of subscribers, and why it does not publish."""
+    """The message type of a teleop pad, the number of subscribers, and the reason if it cannot publish."""
 
     topic: str
     kind: str
@@ -334,17 +333,16 @@ class TeleopState(ServerMessage):
 
 
 class AimTeleop(PageMessage):
-    """The page opens its teleop pad or changes its target; None closes the pad."""
+    """The topic and type of the page's teleop pad, or None when the pad is closed."""
 
     target: TeleopTarget | None
 
 
 class Drive(PageMessage):
-    """A velocity to publish now: m/s along x, y, z and rad/s around x, y, z.
+    """A velocity to publish now: m/s along x, y, z and rad/s about x, y, z.
 
-    The page repeats it while the user holds the control.
-
-    If no velocity arrives for a while, or the page closes, zero is published.
+    The page sends the velocity repeatedly while the user holds the control. If no velocity arrives for a while, or the
+    page closes, zero is published.
     """
 
     linear: list[float]

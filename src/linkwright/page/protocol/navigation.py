@@ -1,4 +1,4 @@
-"""The nav2 panel: the states of its nodes and its goal, and commands to them."""
+"""The nav2 panel: the states of nav2's nodes and goal, and commands to the nodes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class WatchNavigation(PageMessage):
 
 
 class CommandNavigation(PageMessage):
-    """The user pressed a button: a command to both lifecycle managers, or one that cancels all goals."""
+    """A command of the user: one for both lifecycle managers, or one that cancels all goals."""
 
     command: NavigationCommand
 
@@ -30,14 +30,14 @@ class NavigationState(ServerMessage):
     """The state of navigation for the panel.
 
     Attributes:
-        navigation: the nodes of lifecycle_manager_navigation.
+        navigation: the state of lifecycle_manager_navigation.
         localization: the state of lifecycle_manager_localization.
-        goal: the last goal of ``navigate_to_pose``.
+        goal: the state of the last goal of ``navigate_to_pose``.
         eta: the remaining time, seconds; like the next three, None if there is no feedback.
         distance: the remaining distance, metres.
         taken: the elapsed time, seconds.
         recoveries: the number of recoveries so far.
-        busy: whether a command is running.
+        busy: whether a command is being carried out.
         problem: the reason why the last command failed; empty if it succeeded.
     """
 
@@ -53,11 +53,11 @@ class NavigationState(ServerMessage):
 
 
 class GoalOutcome(ServerMessage):
-    """Whether the last goal failed, which is shown over the scene.
+    """Whether the last goal failed, which the page shows over the scene.
 
     Attributes:
         reason: the last error of the node that aborted the goal, or the reason why it was not sent; empty if unknown.
-        failed: whether the goal failed; reset to false when another goal is accepted.
+        failed: whether the goal failed; false again when another goal has been accepted.
     """
 
     reason: str

@@ -8,12 +8,11 @@ from linkwright.page.protocol.message import Bytes, DataContent, Floats, PageMes
 
 
 class CloudPoints(DataContent):
-    """PointCloud2 and similar messages: points in the frame of the message, metres, shape (N, 3).
+    """The points of PointCloud2 and similar messages, in the frame of the message, metres, shape (N, 3).
 
     `colours` has the RGBA colour of each point, shape (N, 4), or is empty if all points have the display's own colour.
-    `translucent` is whether any alpha is less than full. `pixel` is the size of points relative to their depth in the
-    frame, metres per metre; 0 if they have the display's size. For a slow connection only every `step`-th point is
-    sent.
+    `translucent` is whether any alpha is less than 255. `pixel` is the width of a point per metre of depth in the
+    frame; 0 if points have the display's size. For a slow connection, only every `step`-th point is sent.
     """
 
     positions: Floats
@@ -24,7 +23,7 @@ class CloudPoints(DataContent):
 
 
 class CellGrid(DataContent):
-    """GridCells: cell centres, shape (N, 3), and cell side lengths, metres, in the message's frame."""
+    """The cells of GridCells: centres, shape (N, 3), and side lengths, metres, in the message's frame."""
 
     positions: Floats
     width: float
@@ -32,7 +31,7 @@ class CellGrid(DataContent):
 
 
 class AskPoint(PageMessage):
-    """The user selected a point of a display's content; answered by `PointFields`."""
+    """A request for the fields of a point that the user has selected; the response is `PointFields`."""
 
     display: str
     key: str
@@ -40,7 +39,7 @@ class AskPoint(PageMessage):
 
 
 class PointFields(ServerMessage):
-    """The fields of a point other than its coordinates, by name, in the order of the message.
+    """The channels of a point by name, in the order of the message.
 
     A packed colour is ``#rrggbbaa``; a number that is not finite is sent as text.
     """

@@ -1,4 +1,4 @@
-"""The robot: the content of RobotModel displays, and the sliders of its joints."""
+"""Robots: the content of RobotModel displays, and the sliders of joints."""
 
 from __future__ import annotations
 
@@ -14,8 +14,9 @@ from linkwright.page.protocol.message import Floats, PageMessage, Record, Server
 class JointControl(Record):
     """A row of the Joints panel.
 
-    `mimic` is the joint that this joint follows, with position = multiplier * position of that joint + offset; the user
-    cannot move a mimic joint.
+    `mimic` is the name of the joint that this joint follows, with position = multiplier * position of that joint +
+    offset.
+    The user cannot move a mimic joint.
     """
 
     name: str
@@ -41,7 +42,7 @@ class JointPositions(ServerMessage):
 
 
 class SetJoint(PageMessage):
-    """The user moved a joint; the position is in rad or m."""
+    """A position to which the user has moved a joint, rad or m."""
 
     name: str
     position: float
@@ -54,11 +55,11 @@ class SetJoints(PageMessage):
 
 
 class RandomizeJoints(PageMessage):
-    """The user pressed the Randomize button."""
+    """A press of the Randomize button."""
 
 
 class CenterJoints(PageMessage):
-    """The user pressed the Center button."""
+    """A press of the Center button."""
 
 
 ShapeKind = Literal[
@@ -77,8 +78,8 @@ class Submesh(Record):
 class Surface(Record):
     """The material of a shape in a world: roughness and metalness from 0 to 1, and image addresses.
 
-    `emissive_map` is the light that the surface emits; `occlusion_map` (red) darkens places that ambient light does not
-    reach.
+    `emissive_map` is the light that the surface emits; `occlusion_map` (its red channel) darkens regions that ambient
+    light does not reach.
     """
 
     roughness: float
@@ -95,13 +96,13 @@ class Shape(Record):
 
     `size` is x, y, z for a box; radius, length for a cylinder or capsule (along z); radius for a sphere; scale x, y, z
     for a mesh. `url` and `format` (the file extension, lower case) are set for a mesh. `color` is None if the URDF
-    gives no colour; then a mesh keeps its own materials and another shape is RViz's red. With `repaints`, colour and
+    gives no colour; then a mesh keeps its own materials, and another shape is RViz's red. With `repaints`, colour and
     texture replace the mesh's own.
 
-    For worlds, `size` is the radii of an ellipsoid; radius, length of a cone (tip up); x, y of a plane; the
-    height of a polyline, whose `outlines` (x, y, x, y, ...) cut holes into each other; x, y, z of a heightmap, the
-    offset of its centre, and the edge length of its texture; `heights` are fractions of z, shape (rows, columns), in
-    rows along x from the minimum x and y.
+    In worlds, `size` is the radii of an ellipsoid; radius, length of a cone (tip up); x, y of a plane; the height of a
+    polyline, whose `outlines` (x, y, x, y, ...) cut holes into each other. For a heightmap, `size` is x, y, z, the
+    offset of its centre, and the edge length of its texture; `heights` are fractions of z, shape (rows, columns),
+    in rows along x from the minimum x and y.
     """
 
     kind: ShapeKind
@@ -122,7 +123,7 @@ class Shape(Record):
 
 
 class LinkScene(Record):
-    """A link to draw in the frame with its name."""
+    """A link to draw, and the frame whose pose the link has."""
 
     name: str
     frame: str
@@ -136,7 +137,7 @@ class LinkScene(Record):
 class JointScene(Record):
     """A joint, posed in its parent link's frame; `axis` is in the joint's own frame. SI units.
 
-    `lower` and `upper` are None if there is no limit, or if it is not finite.
+    `lower` and `upper` are None if the joint has no limit, or if the limit is not finite.
     """
 
     name: str
@@ -151,9 +152,9 @@ class JointScene(Record):
 
 
 class RobotScene(ServerMessage):
-    """The robot of a RobotModel display; `revision` counts its descriptions.
+    """The robot of a RobotModel display; `revision` is the number of its descriptions so far.
 
-    An empty list of links means no robot.
+    The list of links is empty if there is no robot.
     """
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display",)
@@ -175,14 +176,14 @@ class MeshStatus(PageMessage):
 
 
 class AskProvenance(PageMessage):
-    """The user selected a link of a RobotModel display, and the page asks where it is written."""
+    """A request for the source positions of a RobotModel display's link, which the user has selected."""
 
     display: str
     link: str
 
 
 class LinkProvenance(ServerMessage):
-    """Where a link is written, as lines with macro calls; response to `AskProvenance`."""
+    """The source positions of a link and of the macro calls, as lines; response to `AskProvenance`."""
 
     display: str
     link: str

@@ -1,6 +1,6 @@
 """Simulated worlds: the state and control of a simulation, and modelling. Metres, seconds, newtons.
 
-Modelling a world covers the models and lights of its file, and pages' edits of them.
+Modelling a world means editing the models and lights of its file in a page.
 
 Poses are x, y, z in metres and roll, pitch, yaw in radians, in the world frame. Sizes of shapes are in metres: x, y, z
 of a box, wall or ramp; radius and length of a cylinder; the radius of a sphere. The frame of a shape is at its centre,
@@ -23,7 +23,7 @@ class WorldEntity(Record):
     """A model or light of the world.
 
     `shape`, `size` and `colour` are set for a model that is one simple shape, and otherwise None or empty. `address` is
-    set for a model that an ``<include>`` names. `parts` are the names of the models grouped in it.
+    set for a model that an ``<include>`` names. `parts` are the names of the models that are grouped in this model.
     """
 
     name: str
@@ -38,10 +38,10 @@ class WorldEntity(Record):
 
 
 class ModellingState(ServerMessage):
-    """Whether the world can be edited and is being edited, and its content.
+    """Whether the world can be edited and is being edited, and its models and lights.
 
-    `file` is None for a world without its own file, which is saved to a file that the user names. While no user edits
-    the world, `entities` may be empty.
+    `file` is None for a world without a file of its own; such a world is saved to a file that the user names. While no
+    user edits the world, `entities` may be empty.
     """
 
     available: bool
@@ -59,7 +59,7 @@ NO_WORLD = ModellingState(
 
 
 class ModelChoice(Record):
-    """A model on the search path, and the address that includes it."""
+    """A model on the search path, and the address that an ``<include>`` needs."""
 
     name: str
     address: str
@@ -83,13 +83,16 @@ class EntityChange(Record):
 
 
 class SetModelling(PageMessage):
-    """The user starts or stops editing the world; during editing the simulation is paused at its start."""
+    """Whether the user edits the world; during editing, the simulation is paused at its start."""
 
     active: bool
 
 
 class AddEntity(PageMessage):
-    """The user adds an object; `address` is the address of a model, and an empty `size` means the default size."""
+    """A request to add an object to the world.
+
+    `address` is the address of a model, and an empty `size` means the default size.
+    """
 
     shape: NewKind
     address: str
@@ -98,60 +101,60 @@ class AddEntity(PageMessage):
 
 
 class ChangeEntities(PageMessage):
-    """The user changes objects, in one undo step."""
+    """A request to change objects, which is undone in one step."""
 
     changes: list[EntityChange]
 
 
 class CopyEntities(PageMessage):
-    """The user copies objects; the copies are placed at an offset (x y z) from the originals."""
+    """A request to copy objects; the copies are placed at an offset (x y z) from the originals."""
 
     names: list[str]
     offset: list[float]
 
 
 class DeleteEntities(PageMessage):
-    """The user deletes objects from the world."""
+    """A request to delete objects from the world."""
 
     names: list[str]
 
 
 class GroupEntities(PageMessage):
-    """The user groups several models into one, and they become its parts."""
+    """A request to group several models, which become the parts of one model."""
 
     names: list[str]
     name: str
 
 
 class UngroupEntity(PageMessage):
-    """The user splits a model into its parts."""
+    """A request to split a model into its parts."""
 
     name: str
 
 
 class UndoWorld(PageMessage):
-    """The user undoes the last change of the world."""
+    """A request to undo the last change of the world."""
 
 
 class RedoWorld(PageMessage):
-    """The user redoes the change that was undone last."""
+    """A request to redo the change that was undone last."""
 
 
 class SaveWorld(PageMessage):
-    """The user saves the world: into its file, or into `path` if it is set."""
+    """A request to save the world to its file, or to `path` if that is set."""
 
     path: str | None
 
 
 class AskModels(PageMessage):
-    """The user opens the list of models on the search path."""
+    """A request for the models on the search path."""
 
 
 class SimulationStatus(ServerMessage):
     """The state of the simulation; `present` is false if there is none.
 
-    `drivable` is true if a velocity topic has a subscriber. `time` is simulated time. It and the real-time factor are
-    None until the simulation publishes them.
+    `drivable` is true if a velocity topic has a subscriber. `time` is the simulated time. `time` and the real-time
+    factor are None until the simulation publishes them.
     """
 
     present: bool
@@ -171,32 +174,38 @@ class SimulationNotice(ServerMessage):
 
 
 class ModelAdded(ServerMessage):
-    """Confirms that the model that the page requested is in the world."""
+    """The confirmation that the model that the page requested is in the world."""
 
     name: str
 
 
 class ControlSimulation(PageMessage):
-    """The user resumes, pauses, steps or resets the simulation."""
+    """A request to resume, pause, step or reset the simulation."""
 
     action: Literal["play", "pause", "step", "reset"]
 
 
 class SpawnModel(PageMessage):
-    """The user adds a model or robot to the world, by a file path or a ``package://`` or ``model://`` address."""
+    """A request to add a model or robot to the simulation.
+
+    The model is named by a file path, or by a ``package://`` or ``model://`` address.
+    """
 
     address: str
     position: list[float]
 
 
 class DeleteModel(PageMessage):
-    """The user deletes a model from the world."""
+    """A request to delete a model from the simulation."""
 
     model: str
 
 
 class DragModel(PageMessage):
-    """The user moves a model by an offset in the world frame, from its pose when `begins` was last true."""
+    """A request to move a model by an offset in the world frame.
+
+    The offset is relative to the model's pose at the last message whose `begins` was true.
+    """
 
     model: str
     begins: bool
@@ -204,7 +213,10 @@ class DragModel(PageMessage):
 
 
 class PushLink(PageMessage):
-    """The user pushes a link (``model::link``) briefly; `force` is in the world frame, `point` in the link's frame."""
+    """A request to push a link (``model::link``) briefly.
+
+    `force` is in the world frame, and `point` in the link's frame.
+    """
 
     link: str
     point: list[float]

@@ -10,7 +10,7 @@ from linkwright.page.protocol.message import PageMessage, Record, ServerMessage
 class TimelineTopic(Record):
     """A topic of a recording, with the number of its messages.
 
-    `counts` are the numbers of messages in equal parts of the recording; empty if unknown.
+    `counts` are the numbers of messages in equal parts of the recording; the list is empty if they are unknown.
     """
 
     name: str
@@ -20,10 +20,10 @@ class TimelineTopic(Record):
 
 
 class Timeline(ServerMessage):
-    """The displayed recording: its name, its times and its topics.
+    """The displayed recording: its name, its start and end, and its topics.
 
-    With `live` it is the history of the last minutes: it has no name, and `HistoryExtent` reports its changing start
-    and end.
+    With `live`, the timeline covers the last minutes. It then has no name, and `HistoryExtent` reports its changing
+    start and end.
     """
 
     name: str
@@ -34,7 +34,7 @@ class Timeline(ServerMessage):
 
 
 class HistoryExtent(ServerMessage):
-    """The stored part of the last minutes: its first and last time, its size in bytes, and the maximum size."""
+    """The extent of the stored last minutes: first and last time, size in bytes, and maximum size."""
 
     start: float
     end: float
@@ -45,9 +45,9 @@ class HistoryExtent(ServerMessage):
 class Playhead(ServerMessage):
     """The position in a recording, which is sent a few times per second while `playing`.
 
-    `live` is whether the present is shown, in a timeline of the last minutes. `seeks` counts the seeks of all users: a
-    page sends its next seek when its previous one is done. `problem` is the reason why playback stopped if the
-    recording cannot be read; otherwise it is empty.
+    `live` is whether the present is shown, in a timeline of the last minutes. `seeks` counts the seeks of all users, so
+    that a page can wait until its previous seek is done. `problem` is the reason why playback stopped if the recording
+    cannot be read; otherwise it is empty.
     """
 
     position: float
@@ -60,37 +60,37 @@ class Playhead(ServerMessage):
 
 
 class Play(PageMessage):
-    """The user resumes or pauses a recording."""
+    """A request to resume or pause playback."""
 
     playing: bool
 
 
 class SeekTime(PageMessage):
-    """The user jumps to a time of a recording."""
+    """A request to jump to a time of a recording."""
 
     position: float
 
 
 class StepTime(PageMessage):
-    """The user jumps to the next or previous displayed message, of any topic or of a single one."""
+    """A request to jump to the next or previous displayed message, of any topic or of a single one."""
 
     forward: bool
     topic: str = ""
 
 
 class GoLive(PageMessage):
-    """The user returns from the last minutes to the present."""
+    """A request to return from the last minutes to the present."""
 
 
 class SetPlayback(PageMessage):
-    """The user changes the speed of playback, or whether it repeats."""
+    """The speed of playback, and whether it repeats."""
 
     speed: float
     loop: bool
 
 
 class RecordedFile(Record):
-    """A finished recording: its file on the server, size in bytes, length in seconds, and its address for pages.
+    """A completed recording: path on the server, size in bytes, length in seconds, and download address.
 
     `simulated` is the simulated duration in seconds; None if time is not simulated, or the duration is unknown.
     """
@@ -104,12 +104,12 @@ class RecordedFile(Record):
 
 
 class RecordingState(ServerMessage):
-    """The state of recording, for all pages; sent every second during a recording.
+    """The state of recording, sent to all pages on changes and every second during a recording.
 
     `possible` is false while a recording is shown. `path` is the path of the recording being written, empty if there is
-    none. `length` is in seconds, `size` in bytes. `saved` is the share of the last minutes that is already written,
-    null if they are not being saved. `problem` is the reason why the last recording failed or ended early. `files` are
-    the recordings of this program, newest first.
+    none. `length` is in seconds, `size` in bytes. `saved` is the fraction of the last minutes that is already written,
+    or null if they are not being saved. `problem` is the reason why the last recording failed or ended early.
+    `files` are the recordings that this program has made, newest first.
     """
 
     possible: bool
@@ -125,17 +125,17 @@ NOTHING_RECORDED = RecordingState(possible=True, path="", length=0.0, size=0, sa
 
 
 class RecordTopics(PageMessage):
-    """The user records topics; an empty list means all present and future topics."""
+    """A request to record topics; an empty list means all present and future topics."""
 
     topics: list[str]
 
 
 class StopRecording(PageMessage):
-    """The user stops the recording."""
+    """A request to stop the recording."""
 
 
 class SaveMinutes(PageMessage):
-    """The user saves the last minutes, or the part between two times, seconds since the epoch."""
+    """A request to save the last minutes, or the part of them between two times."""
 
     start: float | None
     end: float | None
@@ -169,11 +169,11 @@ class Clock(ServerMessage):
 
 
 class TimeReset(ServerMessage):
-    """Reports that time was reset and displays dropped their messages."""
+    """The notice that time was reset and that displays have discarded their messages."""
 
 
 class SetTime(PageMessage):
-    """The user pauses or resumes time, or synchronizes it with a display's messages."""
+    """A request to pause or resume time, or to synchronize it with a display's messages."""
 
     paused: bool
     mode: SyncMode
@@ -181,10 +181,10 @@ class SetTime(PageMessage):
 
 
 class ResetTime(PageMessage):
-    """The user presses the Reset button: displays are cleared, and elapsed times restart at zero."""
+    """A press of the Reset button: displays are cleared, and elapsed times restart at zero."""
 
 
 class WatchClock(PageMessage):
-    """Whether a page shows the clocks."""
+    """Whether the page receives the clocks from now on."""
 
     watching: bool

@@ -1,6 +1,6 @@
-"""Views, which are poses of the camera, and tools, which determine how the mouse acts in the scene.
+"""Views, which determine the camera, and tools, which determine what the mouse does in the scene.
 
-Every page has its own camera and selected tool. Pages share the file's view, the saved views, and the list and settings
+Every page has its own view and selected tool. Pages share the file's view, the saved views, and the list and settings
 of tools. The values of a view are identified by the path of their property: ``Distance``, ``Focal Point/X``.
 """
 
@@ -21,7 +21,10 @@ class View(Record):
 
 
 class ViewClass(Record):
-    """A type of view: its rows, whose IDs are names of values, and RViz's defaults, including rows not shown."""
+    """A class of views: its property rows, whose IDs are the names of values, and RViz's defaults.
+
+    The defaults include values without a row.
+    """
 
     cls: str
     properties: list[Property]
@@ -35,10 +38,11 @@ class ViewClasses(ServerMessage):
 
 
 class ViewState(ServerMessage):
-    """The view of a configuration; from then on the page controls the camera.
+    """The view with which a page shows a configuration; afterwards the page controls its camera.
 
-    `revision` counts the configurations that were opened. If it is unchanged, a page that reconnects keeps its camera.
-    `whole_robot` is whether no user chose this view: the camera then fits the robot once it is drawn.
+    `revision` is the number of configurations opened so far. If it is unchanged, a page that reconnects keeps its
+    camera.
+    `whole_robot` is whether no user has chosen this view, so that the page fits the camera to the robot.
     """
 
     view: View
@@ -60,15 +64,19 @@ class SavedViews(ServerMessage):
 
 
 class ViewChanged(PageMessage):
-    """The page's current camera, sent at most a few times per second; the last one of any page is saved in the file."""
+    """The page's current view, sent at most a few times per second while it changes.
+
+    The file stores the view that any page sent last.
+    """
 
     view: View
 
 
 class RobotMeasured(PageMessage):
-    """The size of the robots with their meshes, measured by a page whose camera the user has not moved.
+    """The size of the drawn robots, measured by a page whose camera the user has not moved.
 
-    It consists of the diagonal of their bounding box, and the height of the ground below them, in the Fixed Frame, m.
+    It consists of the diagonal of their bounding box in m, and the height of the ground below them, in the Fixed Frame,
+    m.
     """
 
     diagonal: float
@@ -76,20 +84,20 @@ class RobotMeasured(PageMessage):
 
 
 class SaveView(PageMessage):
-    """Add a view to the saved ones."""
+    """A request to add a view to the saved views."""
 
     view: View
 
 
 class ChangeSavedView(PageMessage):
-    """Change the name or the values of a saved view."""
+    """A request to change the name or the values of a saved view."""
 
     id: str
     view: View
 
 
 class RemoveSavedView(PageMessage):
-    """Remove a saved view."""
+    """A request to remove a saved view."""
 
     id: str
 
@@ -112,14 +120,17 @@ class ToolClass(Record):
 
 
 class Tools(ServerMessage):
-    """The tools in the order of the toolbar, sent after each change; the first is the default one."""
+    """The tools in the order of the toolbar, sent at first and after each change.
+
+    The first tool is the default one.
+    """
 
     tools: list[Tool]
     classes: list[ToolClass]
 
 
 class ToolPropertyChanged(ServerMessage):
-    """A tool's new setting, set by any page; after a refused value, it contains the current setting."""
+    """A tool's new property value, set by any page, or the current value after a refused one."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("id",)
 
@@ -128,26 +139,29 @@ class ToolPropertyChanged(ServerMessage):
 
 
 class SetToolProperty(PageMessage):
-    """The user edited a setting of a tool."""
+    """A property value that the user has entered for a tool."""
 
     id: str
     value: PropertyValue
 
 
 class AddTool(PageMessage):
-    """Add a tool of a class at the end of the toolbar."""
+    """A request to add a tool of a class at the end of the toolbar."""
 
     cls: str
 
 
 class RemoveTool(PageMessage):
-    """Remove a tool from the toolbar."""
+    """A request to remove a tool from the toolbar."""
 
     id: str
 
 
 class PoseChosen(PageMessage):
-    """The user set a 2D Pose Estimate or 2D Goal Pose in the Fixed Frame: metres, and radians about z."""
+    """A pose that the user has set with a tool such as 2D Goal Pose.
+
+    The pose is in the Fixed Frame, in metres and radians about z.
+    """
 
     tool: str
     x: float
@@ -156,7 +170,7 @@ class PoseChosen(PageMessage):
 
 
 class PointChosen(PageMessage):
-    """The user selected a point with a Publish Point tool, in the Fixed Frame, metres."""
+    """A point that the user has selected with a Publish Point tool, in the Fixed Frame, metres."""
 
     tool: str
     x: float

@@ -1,4 +1,4 @@
-"""The Voice panel: sound from pages' microphones, recognized commands and answers, and commands as text.
+"""The Voice panel: sound from pages' microphones, recognized commands, answers, and typed commands.
 
 Sound is sent in little-endian binary frames: four uint32 (kind 5, number of samples N, number of samples that the
 browser lost in or before them, 0), and N int16 samples, mono at 16 kHz. A frame contains a tenth of a second, or less
@@ -43,7 +43,7 @@ class SoundBlock:
 
 
 def unpack_sound(frame: bytes) -> SoundBlock | None:
-    """Return the sound in a binary frame of a page; None for any other kind of frame."""
+    """Return the sound in a page's binary frame, or None if the frame does not contain sound."""
     if len(frame) < _HEADER.size:
         return None
     kind, count, lost, _ = _HEADER.unpack_from(frame)
@@ -61,7 +61,7 @@ class VoiceNode(ServerMessage):
 
 
 class WatchVoice(PageMessage):
-    """Start or stop sending recognized commands and answers."""
+    """Whether the page receives recognized commands and answers from now on."""
 
     watched: bool
 
@@ -72,14 +72,15 @@ TalkMode = Literal["off", "ready", "held", "open"]
 class Talk(PageMessage):
     """The mode of the page's microphone.
 
-    It is off; ready, without publishing sound yet; or published, either while a button is held or continuously.
+    The microphone is off; or ready, without publishing sound yet; or its sound is published, either while a button is
+    held or continuously.
     """
 
     mode: TalkMode
 
 
 class SayCommand(PageMessage):
-    """A command as text, handled like a spoken one."""
+    """A command that the user has typed, handled like a spoken one."""
 
     text: str
 
@@ -88,14 +89,14 @@ Talking = Literal["nobody", "you", "another"]
 
 
 class VoiceState(ServerMessage):
-    """The page that talks, and the listeners in the graph.
+    """The page whose sound is published, and the subscribers in the graph.
 
     Attributes:
         talking: the page whose sound is published. One page talks at a time: the first with its button held, or else
             the first that listens continuously.
         sound_listeners: the number of subscribers to sound.
         text_listeners: the number of subscribers to commands as text.
-        cut: whether the page has to restart, because it sent sound faster than real time or reported too much loss.
+        cut: whether the page has to start again, because it sent sound faster than real time or reported too much loss.
         proposes_enrolling: whether the robot recognized no word of a command and proposes to enrol words.
     """
 

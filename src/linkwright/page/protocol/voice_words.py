@@ -15,19 +15,22 @@ class EnrolledWord(Record):
 
 
 class WatchWords(PageMessage):
-    """Start or stop sending the words, initially and after every change."""
+    """Whether the page receives the words from now on, at first and after every change."""
 
     watched: bool
 
 
 class BeginTake(PageMessage):
-    """Start recording a word: the sound until `EndTake` is the word, said once. It is not published."""
+    """The start of the recording of a word.
+
+    The sound until `EndTake` is the word, said once; it is not published.
+    """
 
     name: str
 
 
 class EndTake(PageMessage):
-    """End the recording of a word.
+    """The end of the recording of a word.
 
     Attributes:
         has_gaps: whether some of the sound was lost.
@@ -37,26 +40,26 @@ class EndTake(PageMessage):
 
 
 class RemoveWord(PageMessage):
-    """Remove a word."""
+    """A request to remove an enrolled word."""
 
     name: str
 
 
 class RenameWord(PageMessage):
-    """Rename a word."""
+    """A request to rename an enrolled word."""
 
     name: str
     new_name: str
 
 
 class ImportWords(PageMessage):
-    """Import the words of a file; they replace words with the same names."""
+    """A request to import the words of a file, which replace words with the same names."""
 
     text: str
 
 
 class AskWordsFile(PageMessage):
-    """Request the file that contains the words."""
+    """A request for the text of the file that contains the words."""
 
 
 class VoiceWords(ServerMessage):
@@ -65,7 +68,7 @@ class VoiceWords(ServerMessage):
     Attributes:
         words: the words, in the order in which they were enrolled.
         enough: the number of recordings that a word needs.
-        file: the file in which they are stored.
+        file: the path of the file in which the words are stored.
         problem: the reason why the file cannot be read or written, or why a request failed.
     """
 
@@ -76,10 +79,10 @@ class VoiceWords(ServerMessage):
 
 
 class TakeJudged(ServerMessage):
-    """The verdict on a recording of a word.
+    """The assessment of a recording of a word.
 
     Attributes:
-        number: counts the recordings.
+        number: the number of the recording.
         name: the word.
         code: the code of the finding for which the recording was refused; None if it was accepted.
         text: the text of that finding.

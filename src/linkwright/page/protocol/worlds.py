@@ -38,11 +38,11 @@ class RayAngles(Record):
 
 
 class LidarScene(Record):
-    """A lidar of a world, with those of its rays that are drawn.
+    """A lidar of a world, and those of its rays that are drawn.
 
     `name` includes the names of model and link. `position` (m) and `quaternion` (x y z w) are in the frame of the link.
     The lidar looks along x; horizontal angles are about z, vertical angles are positive upwards. `nearest` and
-    `farthest` are the limits of its range, in m. `visualized` is whether its description asks to draw it.
+    `farthest` are the limits of the lidar's range, in m. `visualized` is whether the description requests drawing it.
     """
 
     name: str
@@ -57,10 +57,10 @@ class LidarScene(Record):
 
 
 class CameraScene(Record):
-    """A camera of a world; fields are as in `LidarScene`, and it looks along x with z up.
+    """A camera of a world, which looks along x with z up; common fields are as in `LidarScene`.
 
-    `left`, `right`, `up` and `down` are the bounds of its image at a distance of 1. `near` and `far` are its clipping
-    distances along x, in m.
+    `left`, `right`, `up` and `down` are the bounds of the camera's image at a distance of 1. `near` and `far` are the
+    clipping distances along x, in m.
     """
 
     name: str
@@ -89,12 +89,12 @@ class FogScene(Record):
 
 
 class WorldScene(DataContent):
-    """The content of a World display to draw; `revision` counts descriptions.
+    """The drawable content of a World display; `revision` is the number of descriptions so far.
 
     `ambient` and `background` are colours: red, green, blue. `shadows` is whether lights cast shadows. `daylight` is
-    the daylight of its sky, from 0 at night to 1; None if there is no sky. `robots` are the models that are robots.
-    `camera` is the initial camera pose in the world's file, x y z qx qy qz qw in the world frame, looking along x; None
-    if the file sets none.
+    the brightness of the sky, from 0 at night to 1; None if there is no sky. `robots` are the names of models that are
+    robots. `camera` is the initial camera pose in the world's file, x y z qx qy qz qw in the world frame, looking along
+    x; None if the file sets none.
     """
 
     revision: int
@@ -113,10 +113,10 @@ class WorldScene(DataContent):
 
 
 class WorldPoses(DataContent):
-    """The poses of the links of a World display, in the order of the scene.
+    """The poses of the links of a World display, in the order of `WorldScene`.
 
-    They are in the frame of the content, shape (N, 7): x y z qx qy qz qw. They apply only to the scene with the same
-    revision.
+    The poses are in the frame of the content, shape (N, 7): x y z qx qy qz qw. They apply only to the scene with the
+    same revision.
     """
 
     revision: int
@@ -124,7 +124,7 @@ class WorldPoses(DataContent):
 
 
 class WorldRays(DataContent):
-    """The lengths of the rays of a World display's lidar with this name, m, shape (vertical * horizontal,).
+    """The measured ray lengths of a World display's lidar, m, shape (vertical * horizontal,).
 
     The length is inf for rays that hit nothing, and -inf for rays that hit an object that is too near to be measured.
     """

@@ -1,4 +1,4 @@
-"""Send pages the differences of two descriptions in one scene."""
+"""Sends pages the differences of two descriptions that are shown in one scene."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _ALPHA = 0.4
 
 
 def show_old(config: RvizConfig, name: str) -> None:
-    """Add a translucent display of the old robot to the configuration of the new one."""
+    """Add a translucent display of the old robot to the configuration of the new robot."""
     display = config.make("rviz_default_plugins/RobotModel", name)
     for path, value in (
         (("Description Topic", "Value"), TOPIC),
@@ -42,7 +42,7 @@ def show_old(config: RvizConfig, name: str) -> None:
 
 
 class ComparisonFeature(PageFeature):
-    """Compares the robots of two displays whenever one of them is replaced. Without a pair it does nothing."""
+    """Compares the robots of two displays whenever one of them changes, once a pair is attached."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -52,7 +52,7 @@ class ComparisonFeature(PageFeature):
         self._sent: dict[VisualizationManager, ComparedDescriptions] = {}
 
     def attach(self, pair: Pair, node: Node) -> Callable[[str], None]:
-        """Show pages the differences between two descriptions.
+        """Begin to show pages the differences between two descriptions.
 
         Args:
             pair: the descriptions; their displays are those of `RvizConfig.for_model` and of `show_old`.
@@ -73,7 +73,7 @@ class ComparisonFeature(PageFeature):
         return [message]
 
     def robot_changed(self) -> None:
-        """Compare the current robots."""
+        """Compare the robots that the displays show now."""
         if self._pair is None or self._old is None:
             return
         old, new = next(
@@ -93,7 +93,7 @@ class ComparisonFeature(PageFeature):
         self._publish(manager)
 
     def manager_closed(self, manager: VisualizationManager) -> None:
-        """Drop the messages that were sent to the manager's pages."""
+        """Discard the differences that were sent to the manager's pages."""
         self._sent.pop(manager, None)
 
     def _publish(self, manager: VisualizationManager) -> None:
@@ -118,7 +118,7 @@ class ComparisonFeature(PageFeature):
 
 
 def without_paths(message: ComparedDescriptions) -> ComparedDescriptions:
-    """Return the comparison for other readers: places are text, without folders above the current one."""
+    """Replace absolute paths in a comparison by file names, so that it can be shared; return it."""
     for compared_robot in (message.old, message.new):
         compared_robot.label = _shareable(compared_robot.label)
     for item in message.items:
@@ -133,7 +133,7 @@ def _shareable(name: str) -> str:
 
 
 def _displays(manager: VisualizationManager) -> tuple[RobotModelDisplay | None, RobotModelDisplay | None]:
-    """Return the displays of the old robot and of the new one."""
+    """Return the displays of the old and of the new robot; None for a display that was removed."""
     models = manager.robot_models()
     old = next((model for model in models if _topic_of(model) == TOPIC), None)
     return old, next((model for model in models if _topic_of(model) != TOPIC), None)
@@ -153,7 +153,7 @@ def _identity(display: RobotModelDisplay | None) -> str:
 
 
 def _marks(comparison: Comparison, old: Robot, new: Robot) -> tuple[dict[str, Mark], dict[str, Mark]]:
-    """Return the marks for links of the old robot and of the new one."""
+    """Return the marks of the links that differ, by name: of the old robot, and of the new robot."""
     of_old: dict[str, Mark] = {name: "removed" for name in old.links if name not in comparison.links}
     before = {after: name for name, after in comparison.links.items()}
     of_new: dict[str, Mark] = {name: "added" for name in new.links if name not in before}
@@ -170,7 +170,7 @@ def _marks(comparison: Comparison, old: Robot, new: Robot) -> tuple[dict[str, Ma
 
 
 def _links_of_same_shape(comparison: Comparison) -> dict[str, str]:
-    """Return the links with unchanged visuals and collisions, by their names in the old robot."""
+    """Return the links whose visuals and collisions are unchanged: new names by old names."""
     other = {
         difference.name
         for difference in comparison.differences
@@ -198,14 +198,14 @@ def _item(difference: Difference, old: Robot, new: Robot, pair: Pair) -> Compare
 
 
 def _element(difference: Difference, old: Robot, new: Robot) -> tuple[Literal["link", "joint"], str, bool]:
-    """Return the link or joint that shows a difference.
+    """Return the link or joint to which a difference belongs.
 
     Returns:
-        Its kind, its name, and whether only the old robot has it.
+        The kind of the element, its name (empty if there is none), and whether only the old robot has it.
     """
     name = difference.name
     if difference.subject == "extension":
-        name = name.partition(" ")[2]  # for example, the link that a <gazebo> element refers to
+        name = name.partition(" ")[2]  # such as the link of a <gazebo> element
     for robot in (new, old):
         elements: Mapping[str, Mapping[str, object]] = {"link": robot.links, "joint": robot.joints}
         if difference.subject != "joint" and name in elements["link"]:

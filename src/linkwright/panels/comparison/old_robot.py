@@ -1,4 +1,4 @@
-"""The older of two descriptions as a robot of the graph, whose links follow the poses of the newer robot."""
+"""The older of two descriptions as a robot in the graph, posed like the newer robot."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ TOPIC = "/old/robot_description"
 
 
 class OldRobot:
-    """Publishes a description, and transforms that give its joints the positions of another robot's joints.
+    """Publishes a description, and its transforms with the joint positions of another robot.
 
     Joints that both robots have follow the other robot. Joints that only the old robot has are at zero, or in the
-    middle of their limits if those exclude zero.
+    middle of their limits if the limits exclude zero.
 
     Args:
-        node: the node that publishes; other programs need not see it, because this robot is not theirs.
+        node: the node that publishes, which other programs need not see.
         listener: the node that receives the other robot's joint states.
     """
 
@@ -55,7 +55,7 @@ class OldRobot:
         self._text.publish(String(text))
 
     def place(self, old: Robot, new: Robot, comparison: Comparison) -> None:
-        """Publish the poses of the links.
+        """Publish the poses of the old robot's links, now and with each of the new robot's joint states.
 
         Args:
             old: the robot of the published description.
@@ -91,7 +91,7 @@ class OldRobot:
 
 
 def joints_that_follow(old: Robot, new: Robot, same: Mapping[str, str]) -> dict[str, str]:
-    """Return the old robot's joints that follow joints of the new one, by name.
+    """Return the joints of the old robot that follow one of the new robot: new names by old names.
 
     A joint and the joint that it follows are both revolute, or both prismatic.
     """
@@ -104,7 +104,10 @@ def joints_that_follow(old: Robot, new: Robot, same: Mapping[str, str]) -> dict[
 
 
 def _positions_at_zero(robot: Robot, leaders: Mapping[str, str]) -> dict[str, float]:
-    """Return initial positions for all movable joints, except joints that mimic another movable joint."""
+    """Return the initial positions of the movable joints by name, in rad or m.
+
+    Joints that mimic another movable joint are omitted.
+    """
     zeros = {joint.name: joint.zero for joint in layout_of(robot, JointSettings()).ranges.values()}
     moving = [joint for joint in robot.joints.values() if joint.type in MOVING_TYPES]
     given = {joint.name for joint in moving if joint.mimic is None or joint.name in leaders}
@@ -116,9 +119,10 @@ def _positions_at_zero(robot: Robot, leaders: Mapping[str, str]) -> dict[str, fl
 
 
 def _anchor(old: Robot, new: Robot, same: Mapping[str, str]) -> tuple[str, NDArray[np.float64]]:
-    """Return the new robot's frame to which the old root is attached, and the root's pose in it.
+    """Return the frame of the new robot to which the old root is attached, and the root's pose in it.
 
-    The common link nearest to the old root coincides in both robots, with the joints between them at zero.
+    The common link nearest to the old root coincides in both robots, with the joints between that link and the root at
+    zero.
     """
     below: dict[str, list[tuple[str, NDArray[np.float64]]]] = {}
     for joint in old.joints.values():

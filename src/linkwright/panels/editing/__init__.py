@@ -1,1 +1,1 @@
-"""Edit a robot in the page."""
+"""Editing of a robot in the page."""

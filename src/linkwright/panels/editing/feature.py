@@ -1,4 +1,4 @@
-"""Edit a robot in the page: show minimal text changes, and write them into the files on request.
+"""Editing of a robot in the page: previews of minimal text changes, which are written on request.
 
 All pages share one history. Requests are handled one after the other in a thread, because an edit is verified by
 expanding the description again.
@@ -46,7 +46,7 @@ class EditingFeature(PageFeature):
             self._worker = asyncio.get_running_loop().create_task(self._work())
 
     def page_closed(self, page: Page) -> None:
-        """Drop the previews of a page."""
+        """Discard the preview of a page."""
         self._watching.discard(page)
         self._plans.pop(page, None)
         self._newest.pop(page, None)
@@ -117,7 +117,7 @@ class EditingFeature(PageFeature):
         return editing.EditableParts(message.display, message.link, problem, parts)
 
     def _known_robot(self, page: Page, display: str) -> tuple[Robot | None, Description | None]:
-        """Return the robot that a display shows, and its description if it is from a file of this machine."""
+        """Return the robot of a display, and its description if that was read from a file of this machine."""
         found = next(
             (robot_model for robot_model in self.managers.of(page).robot_models() if robot_model.id == display), None
         )

@@ -1,4 +1,4 @@
-"""The editable parts of a robot with their values and places, and edits as lines of text."""
+"""The editable parts of a robot with their values and source positions, and the text of edits."""
 
 from __future__ import annotations
 
@@ -31,15 +31,12 @@ def parts_of(robot: Robot, link_name: str) -> list[EditablePart]:
 
 
 def request_of(message: PreviewEdit) -> EditRequest:
-    """Return the edit that a page requests."""
+    """Return the edit that a page's message describes."""
     return EditRequest(message.part, message.name, message.index, message.xyz, message.rpy, message.together)
 
 
 def files_of(plan: EditPlan) -> list[EditedFile]:
-    """Return the files that an edit changes, with lines that start with ``-``, ``+`` or a blank.
-
-    Lines with ``@@`` before them give their positions in the file.
-    """
+    """Return the files that an edit changes, each as the lines of a unified diff without its header."""
     return [EditedFile(path, list(_diff(plan.before[path], text))) for path, text in plan.texts.items()]
 
 
@@ -74,7 +71,11 @@ def _numbers(origin: Pose) -> tuple[list[float], list[float]]:
 
 
 def _written(owner: Element | None, tag: str) -> tuple[str, str, int]:
-    """Return the text, file and line of a child element; for a missing one, the owner's file and line."""
+    """Return the attributes ``xyz`` and ``rpy`` of a child element as text, and its file and line.
+
+    If the child is missing, return an empty text and the owner's file and line; an unknown position is an empty file
+    name and line 0.
+    """
     element = None if owner is None else owner.first(tag)
     place = element or owner
     span = None if place is None else place.span()

@@ -1,1 +1,1 @@
-"""Export robots as one HTML page that needs no server, or as glTF."""
+"""Export of robots as one HTML page that needs no server, or as glTF."""

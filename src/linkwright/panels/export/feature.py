@@ -1,4 +1,4 @@
-"""Export the robot in one of several file formats, for a page to download once."""
+"""Exports the robot in one of several file formats, which a page downloads once."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ class Format:
     """A file format.
 
     Attributes:
-        content_type: its MIME type.
-        write: returns the file's content.
+        content_type: the MIME type.
+        write: returns the content of the file for a snapshot.
     """
 
     content_type: str
@@ -58,20 +58,20 @@ def export_snapshot(snapshot: Snapshot, ending: str) -> bytes:
     """Return the content of the exported file.
 
     Raises:
-        LinkwrightError: the file cannot be made.
+        LinkwrightError: the file cannot be created.
     """
     return FORMATS[ending].write(snapshot)
 
 
 class ExportFeature(PageFeature):
-    """Exports the configuration that a page shows."""
+    """Exports the robot of the configuration that a page shows."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
         self._working: dict[Page, asyncio.Task[None]] = {}
 
     def receive(self, page: Page, message: AskExport) -> None:
-        """Start an export; each page has one at a time."""
+        """Start an export, unless an export of the page is already running."""
         if message.format not in FORMATS or page in self._working:
             return
         task = asyncio.get_running_loop().create_task(self._make(page, message))
@@ -93,7 +93,7 @@ class ExportFeature(PageFeature):
         except Exception as error:  # noqa: BLE001  # a fault of ours must not leave the page waiting
             self.context.node.get_logger().error(
                 f"The export failed:\n{traceback.format_exc()}"
-            )  # this is rclpy's logger, not the standard library's
+            )  # rclpy's logger, not the one of the standard library
             page.send(ExportFailed(f"{type(error).__name__}: {error}"))
             return
         name = re.sub(r"[^\w.-]+", "_", snapshot.name).strip("._") or "robot"

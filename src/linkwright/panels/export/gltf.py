@@ -1,4 +1,4 @@
-"""Write a robot as a glTF 2.0 binary file: a document, with its arrays and images."""
+"""Writes a robot as a binary glTF 2.0 file, which contains a document, arrays and images."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ _REPEAT, _LINEAR, _LINEAR_MIPMAPS = 10497, 9729, 9987
 
 
 class GltfFile:
-    """A glTF file under construction; its parts are identified by indices.
+    """A glTF file under construction, whose parts are identified by indices.
 
     Args:
-        generator: the name of the program that creates it.
+        generator: the name of the program that creates the file.
     """
 
     def __init__(self, generator: str) -> None:
@@ -46,7 +46,7 @@ class GltfFile:
         self._generator = generator
 
     def add(self, kind: str, **content: Any) -> int:
-        """Add an entry to a list of the document, and return its index.
+        """Add an entry to a list of the document, and return the entry's index.
 
         The list is ``nodes``, ``meshes``, ``materials`` or another one. Values of None are omitted.
         """
@@ -55,13 +55,13 @@ class GltfFile:
         return len(entries) - 1
 
     def entry(self, kind: str, index: int) -> dict[str, Any]:
-        """Return an entry that was added, so that it can be changed."""
+        """Return an entry that was added before; changes of the returned dict change the document."""
         return self._parts[kind][index]
 
     def vertices(self, values: NDArray[Any], *, bounded: bool = False) -> int:
-        """Add an array of shape (N, 2 to 4) as float32, with its bounds if requested; return its index.
+        """Add an array of shape (N, 2 to 4) as float32, and return its index.
 
-        glTF requires the bounds for positions.
+        With `bounded`, the array's minimum and maximum are added, which glTF requires for positions.
         """
         array = np.ascontiguousarray(values, dtype="<f4")
         bounds: dict[str, Any] = {}
@@ -89,7 +89,7 @@ class GltfFile:
         )
 
     def texture(self, data: bytes, content_type: str) -> int:
-        """Add a PNG or JPEG as a repeating texture; return its index."""
+        """Add a PNG or JPEG file as a repeating texture, and return the texture's index."""
         if not self._parts.get("samplers"):
             self.add("samplers", magFilter=_LINEAR, minFilter=_LINEAR_MIPMAPS, wrapS=_REPEAT, wrapT=_REPEAT)
         image = self.add("images", bufferView=self._view(data), mimeType=content_type)
@@ -247,13 +247,13 @@ class _RobotWriter:
     # --- materials ---------------------------------------------------------------------------------------------
 
     def _texture(self, shape: Shape) -> bytes | None:
-        """Return the texture that the URDF sets, in a format that glTF supports; None if there is none."""
+        """Return the texture that the URDF sets, as PNG or JPEG, or None if there is none."""
         if shape.texture is None:
             return None
         try:
             return _as_png(self._files.path(shape.texture))
         except (FileRefusedError, OSError, ValueError):
-            return None  # the page also draws the shape without an unreadable texture
+            return None  # like the page, which draws the shape untextured
 
     def _material(self, look: _Look) -> int:
         if look not in self._materials:
@@ -278,14 +278,14 @@ class _RobotWriter:
 
 
 class _Neighbours:
-    """Gives trimesh the files next to a mesh, under the same access rules as for pages."""
+    """Provides trimesh with the files next to a mesh, under the same access rules as for pages."""
 
     def __init__(self, files: FileSet, url: str) -> None:
         self._files = files
         self._folder = urlsplit(url).path.rpartition("/")[0]
 
     def get(self, name: str) -> bytes:
-        """Return the content of a file that the mesh names."""
+        """Return the content of a file that the mesh refers to by a relative path."""
         try:
             return self._files.path(f"{self._folder}/{name.strip().removeprefix('./')}").read_bytes()
         except FileRefusedError as error:
@@ -299,7 +299,7 @@ class _Neighbours:
 
 
 def _look(shape: Shape, part: MeshPart, texture: bytes | None) -> _Look:
-    """Return the look of a mesh part: its own material, or else the URDF's.
+    """Return the appearance of a mesh part: the mesh's own material, or else the URDF's.
 
     The opacity is always the URDF's.
     """

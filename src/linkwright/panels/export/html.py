@@ -1,4 +1,7 @@
-"""Write a robot as one HTML file that contains all scripts, styles, meshes and textures, and fetches nothing."""
+"""Writes a robot as one HTML file with all scripts, styles, meshes and textures.
+
+The page fetches nothing.
+"""
 
 from __future__ import annotations
 
@@ -66,7 +69,7 @@ def html_of(snapshot: Snapshot) -> bytes:
 
 
 def _script(folder: Path) -> str:
-    packed = folder / "export.js.gz"  # `npm run build` alone does not create the compressed file
+    packed = folder / "export.js.gz"  # missing after a plain `npm run build`
     if packed.is_file():
         return gzip.decompress(packed.read_bytes()).decode()
     return (folder / "export.js").read_text(encoding="utf-8")
@@ -82,7 +85,7 @@ def _policy(script: str) -> str:
 
 
 def _recorded(snapshot: Snapshot, program: str) -> str:
-    """Return the messages that a server sends to a new page, as JSON that can be embedded in HTML."""
+    """Return the messages, binary frames and files for the page, as JSON that can be embedded in HTML."""
     robots = [message for message in snapshot.messages if isinstance(message, RobotScene)]
     files = FileSet(snapshot.meshes).collect([*addresses(robots), *snapshot.marker_meshes])
     messages = without_secrets(",".join(encode(message) for message in snapshot.messages))

@@ -1,4 +1,4 @@
-"""Triangulate the shapes of URDF."""
+"""Triangulates the shapes of URDF."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def sphere(radius: float) -> Triangles:
 
 
 def capsule(radius: float, length: float) -> Triangles:
-    """Return a cylinder along z, centred at the origin, with a hemisphere at each end."""
+    """Return the triangles of a cylinder along z with hemispheres at its ends, centred at the origin."""
     angles = np.linspace(np.pi / 2, -np.pi / 2, _RINGS + 1)
     angles = np.insert(angles, _RINGS // 2, 0.0)
     shift = np.where(np.arange(_RINGS + 2) <= _RINGS // 2, length / 2, -length / 2)
@@ -54,9 +54,9 @@ def capsule(radius: float, length: float) -> Triangles:
 
 
 def _turned(profile: Array) -> Triangles:
-    """Return the surface of revolution of a profile around z, from top to bottom.
+    """Return the triangles of the surface that a profile generates when it rotates about z.
 
-    The rows of the profile are r, z, and the normal's r, z.
+    The profile runs from top to bottom; its rows are r, z, and the normal's r, z.
     """
     around = np.linspace(0.0, 2 * np.pi, _SIDES + 1)
     cosines, sines = np.cos(around), np.sin(around)

@@ -46,7 +46,7 @@ Pose = NDArray[np.float64]
 
 
 def positions_now(robot: Robot, poses: Mapping[str, Pose]) -> dict[str, float]:
-    """Return the positions (rad or m) of the revolute, continuous and prismatic joints from link poses.
+    """Return the positions (rad or m) of the movable joints by name, computed from link poses.
 
     Joints whose links have no known pose are omitted.
 
@@ -83,7 +83,7 @@ def _position(joint: Joint, parent: Pose, child: Pose) -> float:
 
 
 def _within(joint: Joint, angle: float) -> float:
-    """Return the angle, or an equivalent angle that is within the limits."""
+    """Return the angle, or an equivalent angle within the joint's limits if there is one."""
     if joint.type == "continuous" or joint.limit is None:
         return angle
     for turned in (angle, angle + 2.0 * pi, angle - 2.0 * pi):
@@ -149,14 +149,19 @@ class FileSet:
 
 
 def named_files(ending: str, data: bytes) -> list[str]:
-    """Return the file names in a mesh or material file, as written there, relative to its folder."""
+    """Return the files that a mesh or material file refers to, as relative paths.
+
+    Args:
+        ending: the suffix of the file in lower case, such as ``.dae``.
+        data: the content of the file.
+    """
     names: list[str] = []
     if ending == ".dae":
         names = _COLLADA_IMAGE.findall(data.decode("utf-8", "replace"))
     elif ending == ".obj":
         names = _MATERIAL_FILE.findall(data.decode("utf-8", "replace"))
     elif ending == ".mtl":
-        # Options and their numbers may precede a name. A name may contain spaces only if there are no options.
+        # Options with numbers may precede the file name, which then cannot contain spaces.
         lines = _MATERIAL_MAP.findall(data.decode("utf-8", "replace"))
         names = [line.split()[-1] if line.startswith("-") else line for line in lines]
     elif ending == ".gltf":
@@ -182,8 +187,8 @@ class Snapshot:
 
     Attributes:
         name: the name of the robot.
-        robot: its description.
-        scene: its links as pages draw them.
+        robot: the description of the robot.
+        scene: the robot's links as pages draw them.
         positions: the joint positions by name, rad or m.
         messages: the messages that a page needs, the frame table last.
         frames: binary frames, the transforms first.
@@ -191,8 +196,8 @@ class Snapshot:
         problems: the findings on shapes that cannot be drawn.
         marker_meshes: addresses of the meshes that markers show.
         outside: the included files that are neither in a package nor below the description's folder.
-        awaits_size: whether grid and axes should be scaled to the size of the robot, which a page measures.
-        spacing: the typical distance of a link's frame from its parent's, m; None if unknown.
+        awaits_size: whether grid and axes are to be scaled to the size of the robot, which a page measures.
+        spacing: the typical distance in m between the frames of a link and its parent; None if unknown.
     """
 
     name: str
@@ -213,9 +218,9 @@ def snapshot_of(viewer: FeatureHost, manager: VisualizationManager, view: View |
     """Return a snapshot of a configuration as it is currently shown.
 
     Args:
-        viewer: the viewer that shows it.
-        manager: the configuration that it shows.
-        view: the camera; None for the camera of a new page.
+        viewer: the viewer that shows the configuration.
+        manager: the manager of the configuration.
+        view: the view of the camera; None for the view of a new page.
 
     Raises:
         LinkwrightError: VIEW201, there is no robot.
@@ -255,7 +260,7 @@ def files_outside(read: Sequence[Path], scene: RobotScene, meshes: MeshFolders) 
         The files that are neither in a package nor below the folder of the main file.
     """
     files = FileSet(meshes)
-    found = dict.fromkeys(Path(normpath(path.absolute())) for path in read)  # some paths contain `..`
+    found = dict.fromkeys(Path(normpath(path.absolute())) for path in read)  # paths may contain `..`
     for address in addresses([scene]):
         with suppress(FileRefusedError):
             found[files.path(address)] = None
@@ -268,15 +273,13 @@ def files_outside(read: Sequence[Path], scene: RobotScene, meshes: MeshFolders) 
 def take_snapshot(
     model: RobotModelDisplay, opening: Sequence[ServerMessage], payloads: Sequence[Payload], meshes: MeshFolders
 ) -> Snapshot:
-    """Return a snapshot of a robot from the messages to a new page.
-
-    It contains the messages that the page needs to run without a server.
+    """Return a snapshot of a robot, with those messages that a page needs without a server.
 
     Args:
         model: the display of the robot whose joints can be moved.
         opening: the messages to a page that opens.
         payloads: the binary frames to that page.
-        meshes: the folders that it may read from.
+        meshes: the folders that the page may read from.
 
     Raises:
         LinkwrightError: VIEW201, the display has no robot.
@@ -329,7 +332,7 @@ def no_robot() -> LinkwrightError:
 
 
 def _complete(payload: Payload) -> bytes | str | None:
-    """Return the complete content, as for a new page."""
+    """Return the full content of a payload as for a new page, or None if it is empty."""
     if isinstance(payload, ScaledData):
         return payload.full_frame
     return payload if isinstance(payload, (bytes, str)) else payload.since(0)[0]

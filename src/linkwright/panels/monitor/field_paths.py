@@ -1,8 +1,8 @@
 """Paths to a number in a message: ``position[2]``, ``position[elbow]``, ``twist.twist.linear.x``.
 
-Names select fields of nested messages. Brackets select an element of an array, by its index or by its name. The name
-of a value has the same index in a list of names in the same message (``name`` of a JointState, ``joint_names`` of a
-JointTrajectory and its points). A nested message contains its own name (``name`` of a DiagnosticStatus,
+Names select fields of nested messages. Brackets select an element of an array, by its index or by its name. The names
+of an array's elements are taken from a list of names in the same message (``name`` of a JointState, ``joint_names`` of
+a JointTrajectory and its points), by index. A nested message contains its own name (``name`` of a DiagnosticStatus,
 ``child_frame_id`` of a TransformStamped). Booleans count as 0 and 1; times and durations are in seconds.
 """
 
@@ -32,7 +32,7 @@ _STEP = re.compile(r"([A-Za-z_]\w*)((?:\[[^\[\]]+\])*)")
 
 
 class FieldPathError(ValueError):
-    """Raised when a path is invalid or does not lead to a number of the message type; the text gives the reason."""
+    """Raised when a path is not valid or does not lead to a number; the message gives the reason."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +42,7 @@ class _Step:
 
 
 class FieldPath:
-    """A path to a number.
+    """A path to a number in a message.
 
     Args:
         text: the path, in the notation of this module.
@@ -122,7 +122,7 @@ def is_number(kind: FieldType) -> bool:
 
 
 def element_names(owners: Sequence[Any], values: Any) -> Sequence[str] | None:
-    """Return the names of an array's elements, or None if there are none.
+    """Return the names of an array's elements in order, or None if they have no names.
 
     Args:
         owners: the nested messages from the outermost to the one that contains the array.
@@ -162,8 +162,8 @@ def plot_fields(message_class: type[Message], message: Message | None = None) ->
 
     Args:
         message_class: the type.
-        message: an example that determines the lengths and element names of arrays; without an example, only the first
-            element of a variable-length array is offered.
+        message: an example, from which the lengths and element names of arrays are taken. Without an example, only the
+            first element of a variable-length array is offered.
     """
     found: list[PlotField] = []
     for path, kind in _numbers(message_class, message, "", []):
@@ -207,5 +207,5 @@ def _value(field: Field, value: Any, path: str, owners: Sequence[Any]) -> Iterat
 
 
 def _is_awkward(name: str) -> bool:
-    """Return whether a name cannot be written in brackets."""
+    """Return whether a name cannot be written in brackets, because it would be ambiguous."""
     return not name or name.isdecimal() or "[" in name or "]" in name

@@ -23,7 +23,7 @@ _KEPT = 1000
 
 
 class _Reader:
-    """The records that wait for one page. Their message is created when the outbox sends it."""
+    """The log records that are queued for one page; the message is created when the outbox sends it."""
 
     key = "log_lines"
 
@@ -35,13 +35,13 @@ class _Reader:
         return len(self._waiting)
 
     def add(self, line: LogLine) -> None:
-        """Queue a record, and drop the oldest one if too many are waiting."""
+        """Queue a record, and drop the oldest one if too many are queued."""
         if len(self._waiting) == _MOST_WAITING:
             self._missed += 1
         self._waiting.append(line)
 
     def since(self, seen: int) -> tuple[str | None, int]:
-        """Return the message with all waiting records; see `Changes`."""
+        """Return a message with all queued records; see `Changes`."""
         if not self._waiting:
             return None, seen
         message = LogLines(list(self._waiting), self._missed)
@@ -51,7 +51,7 @@ class _Reader:
 
 
 class LogFeature(PageFeature):
-    """Sends pages the records of ``/rosout``, and stores the latest ones while any page is open."""
+    """Stores the latest records of ``/rosout`` while any page is open, and sends them to pages."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -62,13 +62,13 @@ class LogFeature(PageFeature):
         self._turn = Paced(self._send, _PERIOD)
 
     def opening(self) -> list[ServerMessage]:
-        """Begin to store records."""
+        """Subscribe for the first page; no messages are returned."""
         if self._tap is None:
             self._tap = TopicTap(self.context, _TOPIC, self._receive)
         return []
 
     def receive(self, page: Page, message: WatchLog) -> None:
-        """Start or stop sending records to a page; records that arrive in a pause are sent after it."""
+        """Start, pause or stop sending records to a page; records that arrive in a pause are sent after it."""
         if not message.watched:
             self._watching.discard(page)
             return
@@ -78,7 +78,7 @@ class LogFeature(PageFeature):
         self._turn.ask()
 
     def page_closed(self, page: Page) -> None:
-        """Drop the page's records, and unsubscribe after the last page."""
+        """Discard the page's records, and unsubscribe after the last page has closed."""
         self._watching.discard(page)
         self._readers.pop(page, None)
         if len(self.context.pages) == 0:

@@ -11,7 +11,7 @@ from linkwright.panels.page_feature import FeatureHost, PageFeature
 
 
 class NodeGraphFeature(PageFeature):
-    """Sends pages the nodes and topics, initially and after every change."""
+    """Sends the nodes and topics to pages that watch them, at first and after every change."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -33,7 +33,7 @@ class NodeGraphFeature(PageFeature):
             self.context.graph_changes.unwatch(self._publish)
 
     def close(self) -> None:
-        """Stop sending."""
+        """Stop sending the graph to any page."""
         self._sent.clear()
         self.context.graph_changes.unwatch(self._publish)
 

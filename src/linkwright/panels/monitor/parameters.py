@@ -67,7 +67,7 @@ def parameter_row(descriptor: Any, value: Any) -> ParameterRow:
 
 
 def value_texts(value: Any) -> tuple[ParameterKind, list[str]]:
-    """Return the kind of a rcl_interfaces/msg/ParameterValue, and a text for each of its elements."""
+    """Return the kind of a rcl_interfaces/msg/ParameterValue, and the texts of its elements."""
     plain = plain_value(value)
     kind = ParameterType(value.type)
     if kind is ParameterType.NOT_SET:
@@ -76,10 +76,10 @@ def value_texts(value: Any) -> tuple[ParameterKind, list[str]]:
 
 
 def parameter_of(request: SetParameter) -> Parameter:
-    """Return the parameter that a page asks to set.
+    """Return the parameter that a page requests to set.
 
     Raises:
-        ValueError: a text is not a value of the parameter's kind; the message quotes it.
+        ValueError: a text is not a value of the parameter's kind; the message quotes the text.
     """
     kind = _TYPES[request.kind]
     if kind is ParameterType.NOT_SET:
@@ -121,12 +121,12 @@ _PUBLISH_PERIOD = 0.05
 
 
 class RemoteNode:
-    """Reads and sets the parameters of a node, and follows their changes while the node is watched.
+    """Reads and sets the parameters of another node, and follows their changes.
 
     Args:
         node: the node that creates the clients.
         name: the full name of the node that has the parameters.
-        publish: called with all parameters at the start, and after every change.
+        publish: called with all parameters at the start and after every change.
     """
 
     def __init__(self, node: Node, name: str, publish: Callable[[NodeParameters], None]) -> None:
@@ -255,7 +255,7 @@ class ParametersFeature(PageFeature):
             self._nodes[message.node].dump(page.send)
 
     def page_closed(self, page: Page) -> None:
-        """Drop the page's requests."""
+        """Discard the page's requests, and close the clients that no other page needs."""
         if self._requests.pop(page, None) is not None:
             self._update_subscriptions()
 
@@ -320,7 +320,7 @@ class ParametersFeature(PageFeature):
                     back.refresh()
 
     def _returned(self, request: _Request, listed: ParameterNodes) -> RemoteNode | None:
-        """Return the node that the page watches, if it has appeared or reappeared since the last list."""
+        """Return the node that the page watches if it was not in the list sent before, or None."""
         if (
             request.sent is None
             or request.node is None

@@ -1,4 +1,4 @@
-"""Extract plot samples from recorded messages."""
+"""Extracts plot samples from recorded messages."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def sample_of(path: FieldPath, message: Any, received_ns: int) -> tuple[float, f
 
 
 def past_samples(path: FieldPath, cls: Any, messages: Sequence[Recorded]) -> NDArray[np.float64]:
-    """Return samples of recorded messages of a class: shape (3, M), with columns as in `sample_of`."""
+    """Return the samples of recorded messages of a class, as rows of shape (3, M); see `sample_of`."""
     step = -(-len(messages) // _MOST_READ) or 1
     read = [sample_of(path, deserialize(data, cls), stamp_ns) for _, stamp_ns, data in messages[::-1][::step]]
     return np.array([sample for sample in reversed(read) if sample is not None], dtype=np.float64).reshape(-1, 3).T

@@ -37,7 +37,7 @@ _MOST_WAITING = 4096
 
 
 class SampleQueue:
-    """Collects samples until they are taken, and thins them out when there are too many."""
+    """A queue of samples, which is thinned out when it gets too long."""
 
     def __init__(self) -> None:
         self._received: list[float] = []
@@ -69,12 +69,12 @@ class SampleQueue:
 def thinned(samples: NDArray[Any], most: int) -> NDArray[Any]:
     """Return a subset of the samples, of limited size, whose plot looks the same.
 
-    The samples are divided into consecutive shares of equal size. Of each share the minimum and the maximum are kept,
-    in their order.
+    The samples are divided into consecutive groups of equal size. The minimum and the maximum of each group are
+    selected, in their order.
 
     Args:
-        samples: array, shape (3, M); values are in the last row.
-        most: the number of samples to keep, which must be even.
+        samples: array, shape (3, M); the values are in the last row.
+        most: the maximum number of samples to return, which must be even.
     """
     count = samples.shape[1]
     if count <= most:
@@ -107,7 +107,7 @@ _LONGEST_PAST = 600.0
 
 @dataclass(slots=True)
 class _Series:
-    """A series that a page plots."""
+    """A series that a page plots, with its queued samples."""
 
     series: PlotSeries
     path: FieldPath | None
@@ -122,13 +122,13 @@ class _Series:
     def take(self) -> NDArray[np.float64]:
         """Return the samples to send, shape (3, M), and remove them from the queue.
 
-        Past samples, if any, are first, and the page then restarts the series.
+        If there are past samples, they precede the queued ones, and the page restarts the series.
         """
         waiting, past, self.past = self.queue.take(), self.past, None
         return waiting if past is None else np.hstack([past, waiting])
 
     def forget(self) -> None:
-        """Drop queued samples, which belong to another time than the displayed one."""
+        """Discard the queued and the past samples, because the displayed time has jumped."""
         self.past = None
         self.queue.take()
 
@@ -181,7 +181,12 @@ class _Channel:
         self._came()
 
     def set_past(self, seconds: Callable[[_Series], float], timeline: TimelineFeature) -> None:
-        """Give the series without errors their samples from before the displayed time."""
+        """Add the samples from before the displayed time to the series without errors.
+
+        Args:
+            seconds: returns how many seconds of samples a series needs.
+            timeline: provides the recorded messages.
+        """
         cls = self.tap.message_class
         feeding = [series for series in self.series if series.error is None and series.path is not None]
         if cls is None or not feeding:
@@ -212,7 +217,7 @@ class _Plots:
         return any(series.has_samples() for series in self.series.values())
 
     def since(self, seen: int) -> tuple[bytes | None, int]:
-        """Return the frame with all waiting samples; see `Changes`."""
+        """Return a frame with all queued samples; see `Changes`."""
         ready = [(identity, series.take()) for identity, series in self.series.items() if series.has_samples()]
         return pack_samples(ready) if ready else None, seen
 
@@ -231,7 +236,7 @@ class PlotsFeature(PageFeature):
         self._reading: asyncio.TimerHandle | None = None
 
     def receive(self, page: Page, message: AskFields | WatchSeries) -> None:
-        """Handle a request."""
+        """Send the fields of a topic, or replace the series that a page plots."""
         if isinstance(message, WatchSeries):
             self._watch(page, message.series, message.seconds)
         else:
@@ -240,7 +245,7 @@ class PlotsFeature(PageFeature):
                 self._ask(page, message.topic)
 
     def page_closed(self, page: Page) -> None:
-        """Drop the page's series."""
+        """Discard the page's series."""
         self._stop_asking(page)
         self._watch(page, [], 0.0)
         self._pages.pop(page, None)
@@ -292,8 +297,6 @@ class PlotsFeature(PageFeature):
         for channel in list(self._channels.values()):
             channel.set_past(lambda series: seconds.get(id(series), 0.0), self._timeline)
 
-    # -----------------------------------------------------------------------------------------------------------
-
     @staticmethod
     def _is_new(have: dict[int, _Series], series: PlotSeries) -> bool:
         return series.id not in have or have[series.id].series != series
@@ -333,7 +336,7 @@ class PlotsFeature(PageFeature):
     # --- fields that can be plotted ----------------------------------------------------------------------------
 
     def _ask(self, page: Page, topic: str) -> None:
-        """Send the fields that can be plotted, and again once a message shows the lengths of arrays."""
+        """Send the fields that can be plotted, and send them again when a message shows the array lengths."""
 
         def receive(message: Any, _: MessageInfo) -> None:
             page.send(TopicFields(topic, message.TYPE_NAME, plot_fields(type(message), message), None))
@@ -350,7 +353,7 @@ class PlotsFeature(PageFeature):
         return TopicFields(tap.topic, cls.TYPE_NAME, plot_fields(cls), None)
 
     def _class_without_publishers(self, tap: TopicTap) -> Any:
-        """Return the message class of a topic without publishers; None if its subscribers disagree."""
+        """Return the message class that a topic's subscriptions expect, or None if they differ."""
         from linkwright.messages import get_message
 
         types = self.context.node.graph.topics().get(tap.topic, [])

@@ -1,4 +1,7 @@
-"""The teleop pad: publishes pages' velocities as Twist or TwistStamped, and zero when they fall silent."""
+"""The teleop pad: publishes the velocities of pages as Twist or TwistStamped.
+
+When a page sends no velocity for a while, zero is published.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,7 @@ _SILENCE = 0.4
 
 
 class TeleopFeature(PageFeature):
-    """Publishes the velocities of pages' pads. A publisher exists while a page has its pad open."""
+    """Publishes the velocities of pages' teleop pads, with a publisher for each open pad."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -36,7 +39,7 @@ class TeleopFeature(PageFeature):
             self.context.graph_changes.watch(self._review)
 
     def page_closed(self, page: Page) -> None:
-        """Stop the robot that the page drives."""
+        """Stop the robot that the page drives, and close its pad."""
         pad = self._pads.pop(page, None)
         if pad is not None:
             pad.close()
@@ -81,7 +84,10 @@ class _Pad:
             self._topic.close()
 
     def review(self) -> None:
-        """Adopt the message type of the topic's subscribers, and count them; a pad in use keeps its type."""
+        """Use the message type of the topic's subscriptions, and send their number to the page.
+
+        While the robot is moving, the type is not changed.
+        """
         target = self._target
         try:
             if self._topic is None:

@@ -1,4 +1,4 @@
-"""A subscription to any topic, with the type and QoS of its publishers."""
+"""A subscription to any topic, with the type and QoS of the topic's publishers."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from linkwright.rviz.context import ViewerContext
 
 
 class Paced:
-    """Limits the rate of work that is requested more often than it needs to be done.
+    """Limits how often work is done that may be requested more often.
 
     Args:
         work: the function that does the work.
@@ -41,7 +41,7 @@ class Paced:
             self._due = self._loop.call_at(max(self._loop.time(), self._done_at + self._period), self._do)
 
     def cancel(self) -> None:
-        """Drop a request that has not been carried out yet."""
+        """Cancel a request for which the work has not been done yet."""
         if self._due is not None:
             self._due.cancel()
             self._due = None
@@ -59,15 +59,16 @@ _DEPTH = 500
 class TopicTap:
     """Receives the messages of a topic until it is closed.
 
-    The topic need not exist yet. Like ``ros2 topic echo``, it requests the strongest QoS that all publishers offer. If
-    a later publisher offers less, it subscribes again.
+    The topic need not exist yet. Like ``ros2 topic echo``, the subscription requests the strongest QoS that all
+    publishers offer. If a later publisher offers less, the topic is subscribed to again.
 
     Args:
-        context: the context of the subscribing node, whose remappings do not apply: topics are named as in the graph.
+        context: the context of the node that subscribes. The node has no remappings, so topics are named as in the
+            graph.
         topic: the absolute name of the topic.
         take: called with each message, or its bytes, and the message info.
-        raw: whether `take` gets CDR bytes.
-        changed: called when `error` or `message_class` changes.
+        raw: whether `take` is called with CDR bytes instead of messages.
+        changed: called when `error` or `message_class` has changed.
     """
 
     def __init__(
@@ -113,7 +114,7 @@ class TopicTap:
         ]
         types = sorted({publisher.type_name for publisher in publishers})
         if not types:
-            return  # keep the last known type until there are publishers again
+            return  # the last known type remains valid until another publisher appears
         if len(types) > 1:
             self.error = f"the topic carries more than one type: {', '.join(types)}"
             self._leave()

@@ -100,7 +100,7 @@ _LEAST_MEASURED_NS = 500_000_000
 
 @dataclass(slots=True)
 class _Request:
-    """The topics that a page lists, measures and expands."""
+    """The topics that a page lists, measures and shows with their messages."""
 
     listed: bool = False
     measured: frozenset[str] = frozenset()
@@ -111,7 +111,10 @@ class _Request:
 
 
 class _Gauge:
-    """Measures a topic, and stores its last message as bytes, which are decoded only when a page shows it."""
+    """Measures the rate and bandwidth of a topic.
+
+    The last message is stored as bytes, which are decoded only when a page shows it.
+    """
 
     def __init__(self, feature: TopicsFeature, context: ViewerContext, topic: str) -> None:
         self._feature = feature
@@ -121,7 +124,7 @@ class _Gauge:
         self.tap = TopicTap(context, topic, self._receive, raw=True, changed=feature.measure_soon)
 
     def message(self) -> TopicMessage | None:
-        """Return the last message; None before the first one, or if its bytes cannot be decoded."""
+        """Return the last message, or None if there is none or if its bytes cannot be decoded."""
         from linkwright.messages import deserialize
 
         if self.last is None or self.tap.message_class is None:
@@ -146,7 +149,7 @@ class _Gauge:
 
 
 class TopicsFeature(PageFeature):
-    """Lists topics, and measures those that a page requests; it subscribes to no other topics."""
+    """Lists all topics, and subscribes only to those that a page measures."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -167,7 +170,7 @@ class TopicsFeature(PageFeature):
             self._send_lists()
 
     def page_closed(self, page: Page) -> None:
-        """Drop the page's requests."""
+        """Discard the page's requests, and end the subscriptions that no other page needs."""
         if self._requests.pop(page, None) is not None:
             self._update_subscriptions()
 
@@ -177,18 +180,21 @@ class TopicsFeature(PageFeature):
         self._update_subscriptions()
 
     def came(self, topic: str) -> None:
-        """Record that a topic has a new message for the pages that expanded it."""
+        """Record that a topic has a new message, for the pages that show its messages."""
         for request in self._requests.values():
             if topic in request.opened:
                 request.due.add(topic)
                 self._messages.ask()
 
     def measure_soon(self) -> None:
-        """Request that measurements are sent as soon as their period allows."""
+        """Request that measurements are sent as soon as the period since the last ones has passed."""
         self._figures.ask()
 
     def _update_subscriptions(self, page: Page | None = None) -> None:
-        """Open the subscriptions that pages need, and close all others; answer a page that has new requests."""
+        """Open the subscriptions that pages need, and close all others.
+
+        `page` is a page whose requests have changed, which receives the list of topics.
+        """
         requests = self._requests.values()
         requested = set[str]().union(*(request.measured | request.opened for request in requests))
         for topic in self._gauges.keys() - requested:

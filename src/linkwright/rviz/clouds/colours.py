@@ -1,4 +1,4 @@
-"""RViz's colour transformers: which ones a cloud supports, and the colours that they give."""
+"""RViz's colour transformers: which ones a cloud supports, and how they colour its points."""
 
 from __future__ import annotations
 
@@ -30,18 +30,18 @@ Colours = NDArray[np.uint8]
 
 @dataclass(frozen=True, slots=True)
 class ColourSettings:
-    """The properties of the colour transformers. Colours are RGB, 0 to 255.
+    """The settings of the colour transformers. Colours are RGB, 0 to 255.
 
     Attributes:
         transformer: one of `TRANSFORMERS`.
-        channel: the channel of ``Intensity``.
+        channel: the name of the channel that ``Intensity`` uses.
         rainbow: whether ``Intensity`` uses the rainbow instead of a gradient from `darkest` to `brightest`.
-        inverted: whether that rainbow is reversed.
+        inverted: whether the rainbow of ``Intensity`` is reversed.
         darkest: the colour of the minimum intensity.
         brightest: the colour of the maximum intensity.
-        intensities: minimum and maximum intensity, or None to use the cloud's own.
+        intensities: minimum and maximum intensity, or None to compute them from the cloud.
         axis: the axis of ``AxisColor``, an index of `AXES`.
-        values: minimum and maximum coordinate, or None to use the cloud's own.
+        values: minimum and maximum coordinate, or None to compute them from the cloud.
         in_fixed_frame: whether ``AxisColor`` uses coordinates in the Fixed Frame.
     """
 
@@ -58,7 +58,7 @@ class ColourSettings:
 
 
 def supported_transformers(points: Points) -> tuple[str, ...]:
-    """Return the transformers that can colour these points; RViz would choose the first."""
+    """Return the transformers that can colour these points, with RViz's own choice first."""
     found = [INTENSITY, AXIS, FLAT]
     if packed := _packed_channel(points):
         values = points.channels[packed]
@@ -73,12 +73,16 @@ def supported_transformers(points: Points) -> tuple[str, ...]:
 def coloured(
     points: Points, settings: ColourSettings, pose: NDArray[np.float64] | None = None
 ) -> tuple[Colours, tuple[float, float] | None]:
-    """Return the colours of the points, and the bounds that were computed for them.
+    """Return the colours of the points, and the computed bounds, or None if none were computed.
+
+    The colours have no rows for ``FlatColor``, where all points have the display's colour. Bounds are the minimum and
+    maximum of the intensity or coordinate; they are computed unless the settings have them.
 
     Args:
         points: the points.
         settings: the colour settings; the points must support the transformer.
-        pose: the pose of the points' frame in the Fixed Frame, x y z qx qy qz qw; None if they are in the Fixed Frame.
+        pose: the pose of the points' frame in the Fixed Frame, x y z qx qy qz qw; None if the points are in the Fixed
+            Frame.
     """
     if settings.transformer == INTENSITY:
         return _by_intensity(points, settings)
@@ -98,7 +102,7 @@ def _by_intensity(points: Points, settings: ColourSettings) -> tuple[Colours, tu
     values = points.values(settings.channel)
     if values is None and settings.channel == "intensity":
         values = points.values("intensities")
-    if values is None:  # RViz draws the points white
+    if values is None:  # white, as in RViz when the channel is missing
         return np.full((len(points), 4), 255, np.uint8), None
     computed = None
     if settings.intensities is None:
@@ -128,7 +132,7 @@ def _by_axis(
 
 
 def _bounds(values: NDArray[Any], limit: float) -> tuple[float, float]:
-    """Return the minimum and maximum of the finite values, or 0 and 0 if there are none."""
+    """Return the minimum and maximum of the finite values within ±`limit`; 0 and 0 if none is finite."""
     if values.size == 0:
         return 0.0, 0.0
     least, largest = float(values.min()), float(values.max())
@@ -174,12 +178,15 @@ def _gradient(corners: NDArray[np.float64], steps: int) -> NDArray[np.uint32]:
 
 
 def _packed_channel(points: Points) -> str | None:
-    """Return the name of the packed colour channel, ``rgb`` or ``rgba``: the later one, as in RViz."""
+    """Return ``rgb`` or ``rgba``, whichever the cloud has; the later of both, as in RViz; or None."""
     return next((name for name in reversed(list(points.channels)) if name in ("rgb", "rgba")), None)
 
 
 def _unpacked(points: Points) -> Colours:
-    """Return the bytes of ``rgb`` or else ``rgba``: blue, green, red, alpha, lowest byte first."""
+    """Return the colours of the channel ``rgb`` or else ``rgba``, as red, green, blue, alpha.
+
+    From the lowest byte, a packed value consists of blue, green, red and alpha. The alpha of ``rgb`` is ignored.
+    """
     name = "rgb" if "rgb" in points.channels else "rgba"
     values = points.channels[name]
     packed = np.ascontiguousarray(values.astype(values.dtype.newbyteorder("<"))).view(np.uint8).reshape(-1, 4)

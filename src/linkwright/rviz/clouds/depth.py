@@ -67,7 +67,10 @@ class DepthCamera:
 
 
 class DepthCloudBuilder:
-    """Converts depth images to points; with occlusion compensation, covered points stay for a while."""
+    """Converts depth images to points.
+
+    With occlusion compensation, points that a nearer object covers stay in the cloud for a while.
+    """
 
     def __init__(self) -> None:
         self._hidden: _Hidden | None = None
@@ -85,13 +88,14 @@ class DepthCloudBuilder:
         keep_covered: float | None = None,
         now: float = 0.0,
     ) -> Points:
-        """Return the points of a depth image.
+        """Return the points of a depth image, in the camera's optical frame.
 
         Args:
             depth: sensor_msgs/msg/Image, 16UC1 or mono16 in millimetres or 32FC1 in metres.
             camera: a camera of the image's size.
             colour: an image of the same size; None for white points.
-            keep_covered: seconds that covered points stay, at half their brightness; None to drop them immediately.
+            keep_covered: seconds for which covered points stay, at half their brightness; None to discard them
+                immediately.
             now: the current time, seconds.
 
         Raises:

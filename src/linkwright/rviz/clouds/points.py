@@ -28,11 +28,11 @@ class BadCloudError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Points:
-    """Points with finite positions.
+    """Points with finite positions, and their other fields.
 
     Attributes:
         positions: float32 array, shape (N, 3), metres in the frame of the message.
-        channels: the values of other fields by name, in the order of the message; each of shape (N,).
+        channels: the values of the other fields by name, in the order of the message; each of shape (N,).
     """
 
     positions: NDArray[np.float32]
@@ -42,7 +42,7 @@ class Points:
         return len(self.positions)
 
     def values(self, name: str) -> NDArray[Any] | None:
-        """Return a channel, or a coordinate; None if these points do not have it."""
+        """Return a channel, or the coordinate ``x``, ``y`` or ``z``; None if there is no such channel."""
         if name in _AXES:
             column: NDArray[Any] = self.positions[:, _AXES.index(name)]
             return column
@@ -50,14 +50,14 @@ class Points:
 
 
 def points_of_cloud(message: Any) -> Points:
-    """Return the finite points of a PointCloud2, as RViz selects them.
+    """Return the points of a PointCloud2 whose coordinates are finite.
 
-    Of several fields with one name the first counts; of a field with several values the first value. Fields of
-    unknown types are ignored.
+    As in RViz, the first of several fields with the same name is used, and the first value of a field with several
+    values. Fields of unknown types are ignored.
 
     Raises:
-        BadCloudError: the size of the data is not that of the points, a field reaches beyond the point, or there are no
-            coordinates in float32.
+        BadCloudError: the size of the data does not match the number of points, a field extends beyond the point, or
+            the coordinates are not float32.
     """
     count = message.width * message.height
     step = message.point_step
@@ -118,7 +118,7 @@ def points_of_legacy_cloud(message: Any) -> Points:
 
 
 def _fields(fields: Any, step: int) -> dict[str, tuple[str, int]]:
-    """Return the type and the offset of each field by name."""
+    """Return the NumPy type (such as ``f4``) and the byte offset of each field, by name."""
     found: dict[str, tuple[str, int]] = {}
     for point_field in fields:
         kind = _FORMATS.get(point_field.datatype)
@@ -153,7 +153,10 @@ def _column(data: NDArray[np.uint8], offset: int, kind: str, step: int, count: i
 
 
 def decimated(cloud: CloudPoints, size: int) -> CloudPoints:
-    """Return every k-th point, at least one, so that the arrays have at most `size` bytes."""
+    """Return every k-th point, with the smallest k for which the arrays have about `size` bytes.
+
+    At least one point is returned.
+    """
     n_bytes = cloud.positions.nbytes + cloud.colours.nbytes
     step = -(-n_bytes // max(1, size))
     if step <= 1:
@@ -171,9 +174,9 @@ class ScanProjector:
     def points(self, scan: Any) -> Points:
         """Return the points at which rays hit an object, in the frame of the scanner.
 
-        A ray counts if its range is at least `range_min` and less than `range_max`; the range of a ray without an echo
-        is infinite or NaN. The channels are ``intensity`` (if the scan has one value for each ray), ``range`` and
-        ``index``.
+        A ray is used if its range is at least `range_min` and less than `range_max`. The range of a ray without an echo
+        is infinite or NaN, so that such a ray is ignored. The channels are ``range`` and ``index``, and
+        ``intensity`` if the scan has one value for each ray.
         """
         ranges = np.frombuffer(scan.ranges, np.float32)
         with np.errstate(invalid="ignore"):
@@ -195,7 +198,7 @@ class ScanProjector:
         return Points(positions[valid], {name: values[valid] for name, values in channels.items()})
 
     def _rays(self, first: float, step: float, count: int) -> NDArray[np.float32]:
-        """Return the cosine and the sine of each ray's angle."""
+        """Return the cosine and the sine of each ray's angle, shape (`count`, 2)."""
         shape = (first, step, count)
         if shape != self._shape:
             with np.errstate(all="ignore"):
@@ -206,7 +209,9 @@ class ScanProjector:
 
 
 def swept(points: Points, parts: NDArray[Any], first: NDArray[np.float64], last: NDArray[np.float64]) -> Points:
-    """Return points measured by a moving sensor, transformed to the frame of its first and last pose.
+    """Return points measured by a moving sensor, transformed with the sensor's pose at each measurement.
+
+    The result is in the frame in which the first and last poses are given.
 
     Args:
         points: points in the moving frame.

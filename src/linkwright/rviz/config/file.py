@@ -19,7 +19,7 @@ MAXIMUM_SIZE = 16 * 1024 * 1024
 
 @dataclass(frozen=True, slots=True)
 class FileForm:
-    """The encoding and line endings of a file.
+    """The byte order mark and the line endings of a file.
 
     Attributes:
         mark: whether the file begins with a byte order mark.
@@ -32,17 +32,17 @@ class FileForm:
 
 @dataclass(frozen=True, slots=True)
 class FileState:
-    """The modification time (ns) and size (bytes) that identify the version of a file that was read."""
+    """The modification time (ns) and size (bytes) of a file, by which a later change is detected."""
 
     modified: int
     size: int
 
 
 def read(path: Path) -> tuple[str, FileForm]:
-    """Return the text of a file, with its line endings unchanged, and its form.
+    """Return the text of a file, with its line endings unchanged, and the file's form.
 
     Raises:
-        LinkwrightError: RVIZ101, the file cannot be read.
+        LinkwrightError: RVIZ101, the file cannot be read, is too large, or is not UTF-8.
     """
     try:
         content = read_file(path, MAXIMUM_SIZE + 1)

@@ -27,7 +27,7 @@ def is_former(cls: str) -> bool:
 
 
 def modern_class(cls: str) -> str:
-    """Return RViz 2's class name of a display, tool or view, given its name in either RViz."""
+    """Return RViz 2's class name of a display, tool or view, given its name in RViz 1 or RViz 2."""
     if not is_former(cls):
         return cls
     name = cls.removeprefix(_FORMER)
@@ -50,7 +50,7 @@ class FormerKey:
 
 
 def former_keys(cls: str) -> Mapping[Path, FormerKey]:
-    """Return the RViz 1 keys for a class by property path; empty for a class of RViz 2."""
+    """Return the RViz 1 keys for a class by property path; an empty mapping for a class of RViz 2."""
     if not is_former(cls):
         return _NONE
     return _BY_CLASS.get(cls.removeprefix(_FORMER), _TOPIC)

@@ -1,7 +1,7 @@
-"""The locations of recent configurations, server folders, and recovery files for unsaved edits.
+"""Recently used configurations, server folders, and recovery files for unsaved edits.
 
-When the program ends, the unsaved edits of each configuration are stored in a recovery file. RViz asks before its
-window is closed, but Ctrl-C in a terminal does not.
+When the program ends, the unsaved edits of each configuration are stored in a recovery file. RViz asks the user before
+its window is closed, but Ctrl-C in a terminal cannot ask.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def configuration_path(text: str, folder: Path) -> Path:
 
 
 def list_folder(text: str | None, folder: Path) -> Folder:
-    """Return the subfolders and configuration files in a folder, without hidden ones.
+    """Return the subfolders and configuration files in a folder, omitting hidden ones.
 
     Args:
         text: an absolute path, a path from ``~``, or a path relative to `folder`; None for `folder` itself.
@@ -78,7 +78,7 @@ def list_folder(text: str | None, folder: Path) -> Folder:
                         folders.append(entry.name)
                     elif entry.name.endswith(ENDING) and entry.is_file():
                         files.append(entry.name)
-    except (OSError, ValueError, RuntimeError) as error:  # RuntimeError: `~user` names an unknown user
+    except (OSError, ValueError, RuntimeError) as error:  # RuntimeError: `~user` is not a known user
         reason = getattr(error, "strerror", None) or error
         raise LinkwrightError(
             Diagnostic(
@@ -86,16 +86,16 @@ def list_folder(text: str | None, folder: Path) -> Folder:
             )
         ) from None
     parent = None if path.parent == path else str(path.parent)
-    from linkwright.page.protocol.configuration import Folder  # imported here because page tokens need only the folder
+    from linkwright.page.protocol.configuration import Folder  # imported late: page tokens use only the folder
 
     return Folder(str(path), parent, sorted(folders)[:_MOST_ENTRIES], sorted(files)[:_MOST_ENTRIES])
 
 
 class RecentFiles:
-    """The most recently opened or saved files, stored for the next start.
+    """The most recently opened or saved files, stored for the next start of the program.
 
     Args:
-        store: the file with their paths; by default one in the user's state folder.
+        store: the file in which their paths are stored; by default one in the user's state folder.
     """
 
     def __init__(self, store: Path | None = None) -> None:
@@ -110,12 +110,12 @@ class RecentFiles:
         return self._paths
 
     def add(self, path: Path) -> None:
-        """Put a file at the top of the list; failing to save the list is not an error."""
+        """Put a file at the top of the list, and store the list; a failure to store it is ignored."""
         name = str(path)
         self._write([name, *(other for other in self._read() if other != name)][:_MOST_RECENT])
 
     def remove(self, path: Path) -> None:
-        """Remove a file that no longer exists from the list."""
+        """Remove a file that no longer exists from the list, if the list contains it."""
         paths = self._read()
         if str(path) in paths:
             self._write([other for other in paths if other != str(path)])
@@ -142,12 +142,15 @@ _HOW = phrase("open that file in the page, or with 'rviz2 -d'")
 
 
 def recovery_folder() -> Path:
-    """Return the folder of the recovery files, below the user's state folder."""
+    """Return the path of the folder with the recovery files, below the user's state folder."""
     return state_folder() / "unsaved"
 
 
 def recovery_file(config: RvizConfig) -> Path:
-    """Return the recovery file of a configuration."""
+    """Return the path of the recovery file of a configuration, whether or not it exists.
+
+    A configuration that was opened from the recovery folder is its own recovery file.
+    """
     folder = recovery_folder()
     if config.path is not None:
         path = _absolute(config.path)
@@ -157,10 +160,11 @@ def recovery_file(config: RvizConfig) -> Path:
 
 
 def keep_unsaved(configs: Iterable[RvizConfig]) -> list[Diagnostic]:
-    """Write configurations that have unsaved edits to recovery files.
+    """Write the configurations that have unsaved edits to recovery files.
 
     Returns:
-        For each configuration, where it was stored (RVIZ301), or that it is lost (RVIZ104).
+        For each of them, a finding with the location of the file (RVIZ301) or with the reason why it cannot be written
+        (RVIZ104).
     """
     diagnostics: list[Diagnostic] = []
     taken: set[Path] = set()
@@ -183,7 +187,7 @@ def keep_unsaved(configs: Iterable[RvizConfig]) -> list[Diagnostic]:
 
 
 def find_unsaved(config: RvizConfig) -> list[Diagnostic]:
-    """Report edits of a file that an earlier run of the program stored (RVIZ302)."""
+    """Report a recovery file that an earlier run of the program stored for this file (RVIZ302)."""
     path = recovery_file(config)
     if config.path is None or _absolute(config.path) == _absolute(path) or not path.is_file():
         return []
@@ -197,11 +201,11 @@ def find_unsaved(config: RvizConfig) -> list[Diagnostic]:
 
 
 def forget_unsaved(former: Path | None, config: RvizConfig, recent: RecentFiles) -> None:
-    """Remove the recovery file of a configuration that has just been saved.
+    """Remove the recovery files of a configuration that has just been saved.
 
     Args:
-        former: the file that the configuration had before; a recovery file is not needed any more after saving
-            elsewhere.
+        former: the file that the configuration had before, or None. It is also removed if it is a recovery file,
+            because the configuration has been saved elsewhere.
         config: the configuration, whose path is the file that it was saved to.
         recent: the list from which removed files are dropped.
     """
@@ -230,7 +234,7 @@ def _stored_finding(config: RvizConfig, path: Path) -> Diagnostic:
 
 
 def _is_saved(config: RvizConfig, text: str) -> bool:
-    """Return whether the file already has a text, because the user reverted all edits."""
+    """Return whether the configuration's file already contains this text, so that nothing is unsaved."""
     if config.path is None:
         return False
     try:
@@ -241,13 +245,13 @@ def _is_saved(config: RvizConfig, text: str) -> bool:
 
 def _name_for(name: str) -> str:
     """Return a safe recovery file name for a configuration name, which a page may have chosen."""
-    mark = hashlib.sha256(os.fsencode(name)).hexdigest()[:8]  # distinguishes equal names
+    mark = hashlib.sha256(os.fsencode(name)).hexdigest()[:8]  # files of the same name in different folders
     stem = _UNFIT.sub("_", Path(name).stem)[:_LONGEST_NAME]
     return f"{stem or _UNNAMED}-{mark}{ENDING}"
 
 
 def _free(path: Path, taken: set[Path]) -> Path:
-    """Return the file, or a free name next to it for a page's own copy of the same configuration."""
+    """Return the path, or a numbered one next to it if another page's copy has already taken it."""
     number, found = 1, path
     while found in taken:
         number += 1

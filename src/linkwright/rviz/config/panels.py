@@ -4,10 +4,10 @@ RViz stores the open panels in three places. ``Panels`` lists the existing panel
 them the user closed. ``Window Geometry`` marks panels as ``collapsed`` if a whole side of the window was hidden. RViz
 uses that mark only while ``Hide Left Dock`` or ``Hide Right Dock`` is on; otherwise it shows those panels again.
 
-The state is the output of Qt's ``QMainWindow::saveState``. For each dock it contains the byte 0xfb, the dock's name
-(its length in bytes as four bytes, then UTF-16, both big endian) and a byte of flags: 1 shown, 2 floating. If a name
-occurs several times, the first one is the dock, and the others are its former places. RViz stores all this as
-hexadecimal digits. Everything else in the state remains unchanged.
+The window state is the output of Qt's ``QMainWindow::saveState``. For each dock it contains the byte 0xfb, the dock's
+name (its length in bytes as four bytes, then UTF-16, both big endian) and a byte of flags: 1 shown, 2 floating. If a
+name occurs several times, the first occurrence is the dock, and the others are its former positions. RViz stores the
+window state as hexadecimal digits. All other bytes remain unchanged.
 """
 
 from __future__ import annotations
@@ -53,13 +53,13 @@ _NOT_OF_RVIZ_1 = frozenset({"transformation", "navigation"})
 
 
 class PanelsConfig:
-    """The ``Panels`` list of a file, and the panels' state in its ``Window Geometry``.
+    """The ``Panels`` list of a file, and the visibility of the panels in its ``Window Geometry``.
 
-    Panels of other classes stay unchanged.
+    Panels of classes that the page does not have stay unchanged.
 
     Args:
         document: the file.
-        report: called with the panels that cannot be shown (RVIZ204).
+        report: called with a finding about the panels that cannot be shown (RVIZ204).
     """
 
     def __init__(self, document: Section, report: Callable[[Diagnostic], None]) -> None:
@@ -74,18 +74,18 @@ class PanelsConfig:
 
     @property
     def shown(self) -> list[PanelName] | None:
-        """The panels that RViz would show, in the order of the file; None if it does not list panels."""
+        """The panels that RViz would show, in the order of the file; None if the file has no ``Panels``."""
         if entries(self._document, _PANELS) is None:
             return None
         found = (_panel(section) for section in self._listed() if self._is_shown(section))
         return list(dict.fromkeys(panel for panel in found if panel is not None))
 
     def show(self, panels: Collection[PanelName]) -> bool:
-        """Write the open panels, and return whether that changed the file.
+        """Open these panels and close all others in the file, and return whether that changed the file.
 
-        Closing a panel does what RViz does: its entry stays, and the window's state marks it as hidden. Where the file
-        has no such state, or has the entry only since the panel was opened here, the entry is removed, as with RViz's
-        *Delete Panel*. When the panel is opened again, the entry is restored to its position.
+        Closing a panel does what RViz does: its entry stays, and the window state marks the panel as hidden. The entry
+        is removed, as with RViz's *Delete Panel*, if the file has no such state or if the entry was added by
+        this program. When the panel is opened again, a removed entry is restored to its position.
         """
         before = self.shown
         for panel in _NAMES:
@@ -113,7 +113,7 @@ class PanelsConfig:
                 remove_section(self._document, _PANELS, section)
 
     def _listed(self) -> list[Section]:
-        """Return the entries that RViz loads; it skips those without a class or a name."""
+        """Return the entries that RViz loads; RViz skips those without a class or a name."""
         return [
             section
             for section in self._document.sections(_PANELS)
@@ -127,7 +127,7 @@ class PanelsConfig:
         return is_shown(self._document.text(*_STATE) or "", name) is not False
 
     def _set_shown(self, section: Section, *, shown: bool) -> None:
-        """Mark a panel as shown or hidden in the window state, if the file has one."""
+        """Mark a panel as shown or hidden in the window state, if there is one, and as not collapsed."""
         name = section.text("Name") or ""
         state = self._document.text(*_STATE) or ""
         if is_shown(state, name) not in (None, shown):
@@ -136,9 +136,9 @@ class PanelsConfig:
             self._document.put((_GEOMETRY, name, "collapsed"), "false")
 
     def _add(self, panel: PanelName) -> Section | None:
-        """Return an entry for a panel: its former one, in its position, or a new one.
+        """Insert an entry for a panel and return it; None if this panel does not exist in the file's RViz.
 
-        None if the file cannot have one.
+        An entry that was removed before is restored to its position.
         """
         there = list(self._document.sections(_PANELS))
         gone = next((section for section in self._order if _panel(section) == panel and section not in there), None)
@@ -177,7 +177,7 @@ def is_shown(state: str, name: str) -> bool | None:
 
 
 def with_shown(state: str, name: str, *, shown: bool) -> str:
-    """Return the window state with a dock shown or hidden; an unknown dock changes nothing."""
+    """Return the window state with a dock shown or hidden; unchanged if it has no such dock."""
     content = _bytes(state)
     at = _flags(content, name)
     if at is None or bool(content[at] & _SHOWN) is shown:
@@ -192,11 +192,11 @@ def _bytes(state: str) -> bytes:
         content = bytes.fromhex(state)
     except ValueError:
         return b""
-    return content if 2 * len(content) == len(state) else b""  # `fromhex` skips white space
+    return content if 2 * len(content) == len(state) else b""  # `fromhex` skips spaces
 
 
 def _flags(content: bytes, name: str) -> int | None:
-    """Return the index of the byte with a dock's flags, or None if it was not found."""
+    """Return the index of the byte with a dock's flags, or None if there is no such dock."""
     text = name.encode("utf-16-be", "surrogatepass")
     mark = _DOCK + len(text).to_bytes(4, "big") + text
     at = content.find(mark) + len(mark)
@@ -205,16 +205,16 @@ def _flags(content: bytes, name: str) -> int | None:
 
 @dataclass(frozen=True, slots=True)
 class Synchronization:
-    """The synchronization mode of the Time panel, and the source display."""
+    """The synchronization mode of the Time panel, and the name of the display that it follows."""
 
     mode: SyncMode = "Off"
     source: str = ""
 
 
 def read_synchronization(document: Section) -> Synchronization:
-    """Return the Time panel's settings.
+    """Return the synchronization settings of the Time panel, or the defaults if RViz would ignore them.
 
-    RViz reads them only with ``Experimental``, which later versions of RViz 1 omit.
+    RViz uses them only if ``Experimental`` is on, except RViz 1 up to Noetic, which does not write that key.
     """
     panel = _time_panel(document)
     if panel is None or not (_text(panel, "Experimental").lower() == "true" or _is_always_on(panel)):
@@ -226,7 +226,7 @@ def read_synchronization(document: Section) -> Synchronization:
 
 
 def write_synchronization(document: Section, synchronization: Synchronization) -> bool:
-    """Write the settings to the Time panel of a file that has one; return whether it changed."""
+    """Write the settings to the Time panel, if the file has one; return whether the file changed."""
     panel = _time_panel(document)
     if panel is None or read_synchronization(document) == synchronization:
         return False
@@ -238,7 +238,7 @@ def write_synchronization(document: Section, synchronization: Synchronization) -
 
 
 def _is_always_on(panel: Section) -> bool:
-    """Return whether the panel is one of RViz 1 up to Noetic, whose synchronization is always on."""
+    """Return whether RViz 1 up to Noetic wrote the panel, in which synchronization is always on."""
     return is_former(_text(panel, "Class")) and not _text(panel, "Experimental") and bool(_text(panel, "SyncSource"))
 
 

@@ -17,7 +17,7 @@ _MANY = 30
 
 
 def property_id(owner: str, path: Iterable[str]) -> str:
-    """Return the ID of the property at a path of names, as used in `protocol`.
+    """Return the ID that the page protocol uses for the property at a path of names.
 
     The path starts below a display or ``global``.
     """
@@ -25,7 +25,7 @@ def property_id(owner: str, path: Iterable[str]) -> str:
 
 
 class PropertyStore:
-    """Property values by path of names: values that were set, then the file's, then the defaults.
+    """Property values by path of names: a value that was set, or else the file's, or else the default.
 
     Args:
         owner: the display's ID, or ``global``.
@@ -33,7 +33,7 @@ class PropertyStore:
         schema: returns the current specs, which change for displays whose rows appear and disappear.
         report: called with a finding about a value in the file that cannot be used; the default is used instead.
         base: the keys from the section to the mapping with the values, which is created only when a value is set.
-        frames: returns the names offered for a ``frame``.
+        frames: returns the frame names that properties of kind ``frame`` offer.
         former: the RViz 1 keys, for a section that RViz 1 wrote.
     """
 
@@ -78,7 +78,7 @@ class PropertyStore:
         return float(value)
 
     def text(self, *path: str) -> str:
-        """Return the value of a ``string``, ``enum``, ``frame`` or ``color``."""
+        """Return the value of a ``string``, ``enum``, ``frame``, ``color`` or ``topic``."""
         return str(self.get(*path))
 
     def check(self, path: Path, value: object) -> None:
@@ -86,7 +86,7 @@ class PropertyStore:
         accept(self._spec(path), value)
 
     def set(self, path: Path, value: object) -> PropertyValue:
-        """Store a value and return it as stored.
+        """Store a value, and return the value as it was stored: converted and clamped.
 
         Raises:
             KeyError: when the schema has no such property.
@@ -100,7 +100,7 @@ class PropertyStore:
         return taken
 
     def set_read_only(self, path: Path, value: PropertyValue) -> bool:
-        """Set a value that the file does not store, such as that of a read-only property.
+        """Set a value without storing it in the file, such as that of a read-only property.
 
         Return whether the value changed.
 
@@ -115,7 +115,7 @@ class PropertyStore:
 
     @contextmanager
     def recording(self) -> Iterator[list[Memory]]:
-        """Collect the file's former entries for properties set inside the block, for `recall`."""
+        """Collect, for `recall`, the former entries of the keys that are set inside the block."""
         memories: list[Memory] = []
         self._recorded = memories
         try:
@@ -124,11 +124,11 @@ class PropertyStore:
             self._recorded = None
 
     def memories(self, of: Iterable[Memory]) -> list[Memory]:
-        """Return the current state of the keys that other memories cover."""
+        """Return the current entries of the keys of other memories, for `recall`."""
         return [self._place().memory(memory.key) for memory in of]
 
     def recall(self, memories: Iterable[Memory]) -> list[Path]:
-        """Restore entries of the file, and return the paths of the values that changed."""
+        """Restore former entries of the file, and return the paths of the properties that changed."""
         keys = {memory.key for memory in memories}
         place = self._place()
         for memory in memories:
@@ -140,7 +140,7 @@ class PropertyStore:
         return [path for path, value in old.items() if self.get(*path) != value]
 
     def find(self, identity: str) -> Path | None:
-        """Return the path of the property with an ID, or None."""
+        """Return the path of the property with an ID, or None if there is no such property."""
         specs = self._schema()
         owner, *names = identity.split("/")
         path = tuple(name.replace("%2F", "/").replace("%25", "%") for name in names)
@@ -158,7 +158,7 @@ class PropertyStore:
         return property_id(self._owner, path)
 
     def rows(self) -> list[Property]:
-        """Return the property rows for the page."""
+        """Return the rows that the page shows: the properties that are not hidden and whose conditions hold."""
         return [self._row(spec, ()) for spec in self._schema() if self._shown(spec)]
 
     def is_condition(self, path: Path) -> bool:
@@ -166,7 +166,7 @@ class PropertyStore:
         return any(_depends(spec, path) for spec in self._schema())
 
     def frame_changes(self) -> list[PropertyChanged]:
-        """Return change messages for the properties of kind ``frame``, with the frame names offered now."""
+        """Return a change message for each ``frame`` property, with the frame names that it offers now."""
         return [
             PropertyChanged(self.identity((spec.name,)), self.get(spec.name), self._frames())
             for spec in self._schema()
@@ -216,7 +216,7 @@ class PropertyStore:
         if scalar is None or spec.kind == "group":
             return spec.default
         if spec.kind in ("enum", "frame") and not scalar.text:
-            return spec.default  # RViz writes an empty value if there was nothing to choose from
+            return spec.default  # RViz writes an empty value if there were no options
         try:
             return from_text(spec, scalar.text)
         except ValueError as error:
@@ -239,13 +239,13 @@ class PropertyStore:
         nested = spec.nested or bool(spec.children)
         if former is not None:
             path, text, nested = (former.key,), former.write(text), False
-            string = string and text not in ("true", "false")  # RViz 1's Unreliable, now a policy
+            string = string and text not in ("true", "false")  # `Unreliable` is a boolean in RViz 1, a policy in RViz 2
         if self._recorded is not None and path[0] not in (memory.key for memory in self._recorded):
             self._recorded.append(self._place().memory(path[0]))
         self._place().put(path, text, string=string, nested=nested)
 
     def _former_key(self, path: Path) -> FormerKey | None:
-        """Return the RViz 1 key of a value, unless the file has the current key."""
+        """Return the RViz 1 key of a property, or None if it has none or the file has the current key."""
         return self._former.get(path) if self._section.scalar(*self._base, *path) is None else None
 
     def _place(self) -> Section:
@@ -259,14 +259,14 @@ class PropertyStore:
         return former.key if former else path[0]
 
     def _is_kept(self, path: Path) -> bool:
-        """Return whether the property exists and is stored in the file, unlike a read-only one."""
+        """Return whether the schema has the property and the file stores it, unlike a read-only one."""
         try:
             return not self._spec(path).read_only
         except KeyError:
             return False
 
     def _named(self, specs: Schema, name: str) -> PropertySpec | None:
-        """Return the first property with a name, using an index for long lists such as a robot's links."""
+        """Return the first property with a name, or None; long lists, such as a robot's links, are indexed."""
         if len(specs) < _MANY:
             return next((spec for spec in specs if spec.name == name), None)
         if self._many[0] is not specs:
@@ -292,13 +292,13 @@ def _depends(spec: PropertySpec, path: Path) -> bool:
 
 
 def qos_of(properties: PropertyStore, name: str = "Topic", *, lasting: bool | None = None) -> QoSProfile:
-    """Return the QoS profile that a Topic property requests.
+    """Return the QoS profile that a topic property and its child properties describe.
 
     Args:
         properties: the display's properties.
-        name: the name of the property.
-        lasting: whether to receive messages that were published earlier, which overrides the property; None to use the
-            property.
+        name: the name of the topic property.
+        lasting: whether the durability is transient local, so that earlier messages are received too; None to use the
+            durability of the property.
     """
     get = properties.text
     keep_all = get(name, "History Policy") == "Keep All"

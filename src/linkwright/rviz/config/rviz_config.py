@@ -117,12 +117,12 @@ class DisplayConfig:
 
     Args:
         section: the entry's section of the file.
-        group: the group that contains the display, or None.
-        report: called with findings about entries below it that cannot be used.
+        group: the group that contains the display, or None at the top level.
+        report: called with findings about entries of the group that cannot be used.
 
     Attributes:
         cls: RViz 2's name of the display's class, even if the file has RViz 1's.
-        displays: the displays of a group.
+        displays: the displays in a group; empty for other displays.
         identity: the display's ID in pages; empty until it is assigned.
     """
 
@@ -137,7 +137,7 @@ class DisplayConfig:
 
     @property
     def written_class(self) -> str:
-        """The name of its class as written in the file."""
+        """The name of the display's class as written in the file; empty if the file has none."""
         scalar = self.section.scalar("Class")
         return scalar.text if scalar else ""
 
@@ -148,7 +148,7 @@ class DisplayConfig:
 
     @property
     def name(self) -> str:
-        """The display's name in the Displays panel; by default the name of its class."""
+        """The display's name in the Displays panel; if the file has none, its class without the package."""
         scalar = self.section.scalar("Name")
         return scalar.text if scalar else self.cls.rpartition("/")[2]
 
@@ -158,7 +158,7 @@ class DisplayConfig:
 
     @property
     def checked(self) -> bool:
-        """The display's own check box: ``Enabled``, or else ``Value``, or else off, as in RViz."""
+        """Whether the check box is on: ``Enabled``, or else ``Value``, or else off, as in RViz."""
         text = self.section.text("Enabled")
         if text is None:
             text = self.section.text("Value")
@@ -174,7 +174,7 @@ class DisplayConfig:
 
     @property
     def box(self) -> list[Memory]:
-        """The values of the check box's keys, for `recall`."""
+        """The current entries of the check box's keys in the file; assign them to restore them."""
         return [self.section.memory(key) for key in _BOX]
 
     @box.setter
@@ -188,7 +188,7 @@ class DisplayConfig:
         return self.checked and (self.group is None or self.group.enabled)
 
     def walk(self) -> Iterator[DisplayConfig]:
-        """Yield the display and its descendants, each group before its contents."""
+        """Yield the display and all displays below it, each group before its contents."""
         yield self
         for display in self.displays:
             yield from display.walk()
@@ -197,7 +197,7 @@ class DisplayConfig:
 def read_displays(
     parent: Section, group: DisplayConfig | None, report: Callable[[Diagnostic], None]
 ) -> list[DisplayConfig]:
-    """Return the entries of ``Displays`` in a section.
+    """Return the displays that are listed under ``Displays`` in a section.
 
     Entries without a class are reported (RVIZ202) and ignored.
     """
@@ -212,14 +212,14 @@ def read_displays(
 
 
 def place(display: DisplayConfig, parent: Section, siblings: list[DisplayConfig], index: int) -> None:
-    """Insert a display into its parent's list of displays and into the file."""
+    """Insert a display before the sibling at `index`, both in the list and in the file."""
     before = siblings[index].section if index < len(siblings) else None
     yaml_tree.insert_section(parent, _KEY, display.section, before)
     siblings.insert(index, display)
 
 
 def displace(display: DisplayConfig, parent: Section, siblings: list[DisplayConfig]) -> None:
-    """Remove a display from its parent's list of displays and from the file."""
+    """Remove a display from its list of siblings and from the file."""
     yaml_tree.remove_section(parent, _KEY, display.section)
     siblings.remove(display)
 
@@ -252,11 +252,11 @@ class RvizConfig:
 
     Attributes:
         path: the file that the configuration was read from or saved to, or None.
-        document: the whole file.
-        displays: the entries of ``Displays``; groups contain others.
-        options: the Global Options.
+        document: the root mapping of the file.
+        displays: the top-level entries of ``Displays``; a group has its own `displays`.
+        options: the values of the Global Options.
         views: the current view and the saved views.
-        tools: the tools.
+        tools: the entries of ``Tools``.
         panels: the open panels.
         warnings: findings about parts of the file that cannot be used.
     """
@@ -275,7 +275,7 @@ class RvizConfig:
             self.warnings.append,
             base=(_MANAGER, "Global Options"),
         )
-        self.options.rows()  # read all options now so that all warnings are known from the start
+        self.options.rows()  # read all options now so that their findings are in `warnings` from the start
         self.displays: list[DisplayConfig] = read_displays(
             document.section(_MANAGER) or yaml_tree.new_section(document.source), None, self.warnings.append
         )
@@ -290,7 +290,8 @@ class RvizConfig:
         """Return the configuration read from a file.
 
         Raises:
-            LinkwrightError: RVIZ101, it cannot be read; RVIZ102, it is not YAML; RVIZ103, it is not a configuration.
+            LinkwrightError: RVIZ101, the file cannot be read; RVIZ102, it is not YAML; RVIZ103, it is not a
+                configuration.
         """
         path = Path(path)
         text, form = configuration_file.read(path)
@@ -300,10 +301,10 @@ class RvizConfig:
     def parse(
         cls, text: str, name: str = "<rviz>", path: Path | None = None, form: FileForm | None = None
     ) -> RvizConfig:
-        """Return the configuration parsed from text; `name` is its name in messages.
+        """Return the configuration parsed from text; findings refer to it as `name`.
 
         Raises:
-            LinkwrightError: RVIZ102, it is not YAML; RVIZ103, it is not a configuration.
+            LinkwrightError: RVIZ102, the text is not YAML; RVIZ103, it is not a configuration.
         """
         document = yaml_tree.parse(text, name)
         if document.section(_MANAGER) is None and not set(_OTHER_KEYS) & set(document.keys()):
@@ -326,7 +327,7 @@ class RvizConfig:
 
         Args:
             fixed_frame: the Fixed Frame, usually the robot's root link.
-            size: the size of the robot, for grid and axes; None for RViz's defaults.
+            size: the size of the robot, from which grid and axes are scaled; None for RViz's default sizes.
             frames: whether TF is enabled; its axes would cover a robot that has visuals.
             name: the name of the model's file, under which unsaved edits are stored.
         """
@@ -353,18 +354,18 @@ class RvizConfig:
         return config
 
     def propose_view(self, values: Mapping[str, Any]) -> None:
-        """Set provisional view values, used until a page has drawn the scene and fits the camera to it."""
+        """Set provisional view values, which apply until a page fits the camera to the scene."""
         view = self.views.current
         view.values |= values
         self.views.current = view
         self._unchosen_view = self.views.current
 
     def follow(self, frame: str, distance: float) -> None:
-        """Make the view follow a mobile robot's frame, with grid and axes at RViz's default sizes.
+        """Make the view follow a mobile robot's frame, and keep the current sizes of grid and axes.
 
         Args:
             frame: the robot's frame.
-            distance: the camera's distance, m.
+            distance: the camera's distance from the frame, m.
         """
         view = self.views.current
         view.values |= {"Target Frame": frame, "Distance": distance}
@@ -383,16 +384,19 @@ class RvizConfig:
 
     @property
     def spacing(self) -> float | None:
-        """The typical distance of a link's frame from its parent's, m, while `awaits_size`; None if unknown."""
+        """The typical distance in m between the frames of a link and its parent; None if it is unknown.
+
+        The distance is also None after `sizes_for` was called.
+        """
         size = None if self._proposed is None else self._proposed.size
         return None if size is None else size.spacing
 
     def sizes_for(self, diagonal: float, ground: float = 0.0) -> list[tuple[DisplayConfig, PropertyPath, float]]:
-        """Return new values for the default grid and axes of a robot whose size was unknown.
+        """Return the sizes of grid and axes that fit a robot which a page has just measured.
 
-        Each item is a display, a property and a value.
-
-        Sizes are returned only once, and only for properties that the user has not changed since.
+        Each item is a display, the path of a property and its new value. Properties that the user has changed are
+        omitted.
+        Only the first call returns sizes; later calls return an empty list.
 
         Args:
             diagonal: the diagonal of the robot's bounding box, m.
@@ -433,10 +437,10 @@ class RvizConfig:
         return DisplayConfig(yaml_tree.copy_section(display.section), None)
 
     def insert(self, display: DisplayConfig, group: DisplayConfig | None = None, index: int | None = None) -> None:
-        """Insert a display into a group or the top level: before the display at `index`, or at the end.
+        """Insert a display into a group, or at the top level: before the display at `index`, or at the end.
 
         Raises:
-            ValueError: the target is not a group, or is inside the display itself.
+            ValueError: the target is not a group, or it is the display itself or a group inside the display.
         """
         if group is not None and (not group.is_group or group in display.walk()):
             raise ValueError(f"'{display.name}' cannot be put into '{group.name}'")
@@ -445,7 +449,7 @@ class RvizConfig:
         display.group = group
 
     def remove(self, display: DisplayConfig) -> None:
-        """Remove a display from the file."""
+        """Remove a display from its group or the top level, and from the file."""
         displace(display, self._parent(display.group), self.siblings(display.group))
 
     def make_group(self, name: str) -> DisplayConfig:
@@ -461,7 +465,7 @@ class RvizConfig:
         )
 
     def arrange(self, arrangement: Arrangement) -> None:
-        """Restore an arrangement of displays."""
+        """Restore an order and grouping of the displays that `arrangement` returned."""
         for group, displays in arrangement.displays.items():
             self.siblings(group)[:] = displays
             for display in displays:
@@ -478,7 +482,10 @@ class RvizConfig:
         return yaml_tree.remember_sequence(holder, "Displays") if holder is not None else SequenceMemory(None, None)
 
     def _parent(self, group: DisplayConfig | None) -> Section:
-        """Return the section that contains ``Displays``; the top-level one is created if it is missing."""
+        """Return the section that contains a group's ``Displays``, or those of the top level.
+
+        The top-level section is created if it is missing.
+        """
         if group is not None:
             return group.section
         manager, made = yaml_tree.make_section(self.document, _MANAGER)
@@ -488,7 +495,7 @@ class RvizConfig:
     # --- file --------------------------------------------------------------------------------------------------
 
     def text(self) -> str:
-        """Return the file's text with the values set so far."""
+        """Return the file's text with all edits; the original text if nothing changed."""
         source = self.document.source
         if yaml_tree.same(self.document, yaml_tree.parse(source.text, source.name)):
             return source.text
@@ -497,7 +504,7 @@ class RvizConfig:
     def save(self, path: str | Path | None = None) -> None:
         """Write the configuration to a file, by default its current one.
 
-        That file is the configuration's file afterwards.
+        `path` becomes the configuration's file.
 
         Raises:
             ValueError: the configuration has no file and `path` is None.
@@ -517,9 +524,11 @@ class RvizConfig:
 
 
 class _Proposed:
-    """The proposed grid and axes for a robot whose meshes are not yet measured.
+    """The proposed sizes of grid and axes for a robot whose meshes are not yet measured.
 
-    The size is None if it is unknown.
+    Args:
+        displays: the displays of `RvizConfig.for_model`.
+        size: the robot's estimated size, or None if it is unknown.
     """
 
     def __init__(self, displays: Sequence[DisplayConfig], size: ModelSize | None) -> None:
@@ -529,7 +538,7 @@ class _Proposed:
         self._texts = {path: display.section.text(*path) for display, path, _ in found}
 
     def corrections(self, diagonal: float, ground: float) -> list[tuple[DisplayConfig, PropertyPath, float]]:
-        """Return the values that should be different and that the user has not changed since."""
+        """Return the sizes for the measured robot, omitting those that the user has changed since."""
         spacing = diagonal if self.size is None else self.size.spacing
         found = _sizes(self._displays, ModelSize(diagonal, spacing), ground)
         return [change for change in found if change[0].section.text(*change[1]) == self._texts[change[1]]]
@@ -546,9 +555,9 @@ _ANY_SIZE = ModelSize(1.0, 1.0)
 def _sizes(
     displays: Sequence[DisplayConfig], size: ModelSize, ground: float = 0.0
 ) -> list[tuple[DisplayConfig, PropertyPath, float]]:
-    """Return values for the displays of `RvizConfig.for_model` by robot size and ground height.
+    """Return the sizes of grid and axes for a robot, given the displays of `RvizConfig.for_model`.
 
-    Each item is a display, a property and a value.
+    Each item is a display, the path of a property and its value. The height of the ground is included unless it is 0.
     """
     grid, _, tf = displays
     offset = [(grid, ("Offset", "Z"), round(ground, 4))] if ground else []

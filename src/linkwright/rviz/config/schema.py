@@ -43,16 +43,17 @@ class PropertySpec:
         options: the values of an ``enum``.
         minimum: the lower bound of an ``int`` or ``float``, inclusive.
         maximum: the upper bound of an ``int`` or ``float``, inclusive.
-        messages: for a ``topic``, the types of the topics offered; by default the display's types.
-        words: for a ``topic``, words that the offered topic names contain, in lower case; by default any name.
-        children: the rows below it.
-        when: the path of another property of the display and the value that it must have for this row to be shown; the
-            conditions of that property must hold too.
-        expanded: whether its children are shown at the start.
-        nested: whether the file stores its value under ``Value``, because it has children there.
+        messages: for a ``topic``, the message types of the topics offered; by default the display's types.
+        words: for a ``topic``, words in lower case, at least one of which an offered topic name contains; by default
+            any name is offered.
+        children: the rows below the property's row.
+        when: the condition for this row to be shown: the path of another property of the display, and the value that it
+            must have. The conditions of that property must hold too.
+        expanded: whether the children are shown at the start.
+        nested: whether the file stores the value under ``Value``, because the key has children in the file.
         hidden: whether the property has a value in the file but no row, like properties that RViz hides.
         read_only: whether only the program sets the property; it is not stored in the file.
-        details: the subject of read-only rows that pages add below it, see `Property`.
+        details: the subject of read-only rows that pages add below the property's row, see `Property`.
     """
 
     name: str
@@ -77,9 +78,9 @@ Schema = tuple[PropertySpec, ...]
 
 
 def vector(name: str, description: str) -> PropertySpec:
-    """Return the declaration of a property with three floats X, Y, Z in metres.
+    """Return the declaration of a group with the float properties X, Y and Z in metres.
 
-    The default is 0, as in RViz's VectorProperty.
+    The defaults are 0, as in RViz's VectorProperty.
     """
     return PropertySpec(
         name, "group", description=description, children=tuple(PropertySpec(axis, "float", 0.0) for axis in "XYZ")
@@ -93,17 +94,17 @@ BILLBOARDS = (("Line Style",), "Billboards")
 def alpha(
     description: str = "Opacity: 0 is invisible.", default: float = 1.0, when: tuple[Path, str] | None = None
 ) -> PropertySpec:
-    """Return the property for a display's opacity."""
+    """Return the declaration of the property ``Alpha``, the opacity from 0 to 1."""
     return PropertySpec("Alpha", "float", default, description, minimum=0.0, maximum=1.0, when=when)
 
 
 def length(name: str, default: float, description: str, when: tuple[Path, str] | None = None) -> PropertySpec:
-    """Return a property for a length in metres."""
+    """Return the declaration of a property for a length in metres."""
     return PropertySpec(name, "float", default, description, when=when)
 
 
 def line_style(*children: PropertySpec) -> PropertySpec:
-    """Return a property for the style of lines, thin or with a width."""
+    """Return the declaration of ``Line Style``: lines of one pixel, or billboards with a width."""
     return PropertySpec(
         "Line Style",
         "enum",
@@ -115,17 +116,17 @@ def line_style(*children: PropertySpec) -> PropertySpec:
 
 
 def line_width() -> PropertySpec:
-    """Return a property for the width of lines."""
+    """Return the declaration of ``Line Width`` in metres, which is shown for billboards."""
     return PropertySpec("Line Width", "float", 0.03, "Width of the lines, in metres.", minimum=0.001, when=BILLBOARDS)
 
 
 def accept(spec: PropertySpec, value: object) -> PropertyValue:
     """Return the value to store for a value sent by a page.
 
-    It is converted to the kind's type and clamped to the bounds.
+    The value is checked against the property's kind. Numbers are converted and clamped to the bounds.
 
     Raises:
-        ValueError: the property does not accept the value; the text states the expected value.
+        ValueError: the property does not accept the value; the message states the expected value.
     """
     if spec.read_only:
         raise ValueError("only the program sets it")
@@ -151,9 +152,7 @@ def from_text(spec: PropertySpec, text: str) -> PropertyValue:
 
 
 def in_place_of(spec: PropertySpec) -> PropertyValue:
-    """Return the value that replaces an unreadable text in a file.
-
-    The value is true for a ``bool``, as in RViz, or else the default.
+    """Return the value that replaces an invalid text in a file: true for a ``bool``, else the default.
 
     To Qt, and so to RViz, every text is true except ``false``, ``0`` and an empty one: ``no`` is true.
     """
@@ -227,7 +226,7 @@ def _number(spec: PropertySpec, value: object) -> int | float | None:
 
 
 def _converted(spec: PropertySpec, text: str) -> object:
-    """Convert text as Qt does for RViz, or return it unchanged for `accept` to refuse."""
+    """Return the value that Qt reads from a text, or the text itself, which `accept` then refuses."""
     kind = spec.kind
     if kind == "bool":
         return _BOOLEANS.get(text.lower(), text)
@@ -246,7 +245,7 @@ def _spelt_number(spec: PropertySpec, text: str) -> object:
     except ValueError:
         return text
     if math.isnan(number):
-        return spec.default  # RViz writes NaN after its camera was lost, and would draw nothing with it
+        return spec.default  # RViz writes NaN when its camera has an invalid pose, with which nothing would be drawn
     return number if math.isfinite(number) else math.copysign(_INFINITE, number)
 
 
@@ -260,7 +259,7 @@ def _spelt_colour(text: str) -> str:
         import webcolors  # type: ignore[import-untyped]  # it ships no types; here, because names are rare
 
         with suppress(ValueError):
-            return str(webcolors.name_to_hex(text))  # knows the same names as Qt: those of SVG
+            return str(webcolors.name_to_hex(text))  # webcolors and Qt both know the colour names of SVG
     return text
 
 
@@ -285,7 +284,7 @@ def topic_spec(
     when: tuple[Path, str] | None = None,
     messages: tuple[str, ...] = (),
 ) -> PropertySpec:
-    """Return the declaration of a topic property with its quality of service.
+    """Return the declaration of a topic property whose children are its quality of service.
 
     Args:
         name: the name of the property.
@@ -293,7 +292,8 @@ def topic_spec(
         description: the tooltip.
         depth: RViz's default for the queue size.
         durability: RViz's default for the durability policy.
-        filter_size: default number of messages that wait for transforms; None if they need none.
+        filter_size: default number of messages that are queued until their transforms are available; None for a display
+            without such a queue.
         durability_help: the tooltip of ``Durability Policy``.
         when: as `PropertySpec.when`.
         messages: as `PropertySpec.messages`.

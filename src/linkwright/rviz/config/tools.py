@@ -1,7 +1,7 @@
 """RViz's tools: the properties of each class, and the tools of a .rviz file.
 
-The page implements how a tool uses the mouse, see `frontend/src/scene/tools`. Names, topics and defaults are RViz's
-(rviz_default_plugins) and nav2's (nav2_rviz_plugins).
+The page implements what the mouse does in each tool, see `frontend/src/scene/tools`. Names, topics and defaults are
+RViz's (rviz_default_plugins) and nav2's (nav2_rviz_plugins).
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ class ToolKind:
 
     Attributes:
         name: the label of its button, as in RViz.
-        schema: its properties.
-        publishes: the type of the messages that it publishes on its ``Topic``; None for a tool that publishes nothing.
-        action: the name and the type of the action that it sends goals to; None for no action.
+        schema: the declarations of its properties.
+        publishes: the type of the messages that the tool publishes on its ``Topic``, or None if it publishes none.
+        action: the name and the type of the action to which the tool sends goals, or None.
     """
 
     name: str
@@ -38,7 +38,7 @@ class ToolKind:
 def _topic(default: str, description: str) -> PropertySpec:
     """Return the declaration of a topic to publish to, with its QoS.
 
-    The topic need not exist yet.
+    The property is a ``string``, because the topic need not exist yet.
     """
     return replace(topic_spec(default=default, description=description), kind="string")
 
@@ -97,7 +97,10 @@ USUAL_TOOLS = tuple(cls for cls in TOOL_KINDS if cls.startswith("rviz_default_pl
 
 
 def tool_name(cls: str) -> str:
-    """Return the label of a tool's button; for an unknown class, its class name with spaces, as in RViz."""
+    """Return the label of a tool's button.
+
+    As in RViz, an unknown class is labelled with its class name, split into words.
+    """
     kind = TOOL_KINDS.get(cls)
     return kind.name if kind else re.sub(r"(?<!^)(?=[A-Z])", " ", cls.rpartition("/")[2])
 
@@ -116,7 +119,7 @@ class ToolEntry:
     Attributes:
         id: an ID that is stable while the file is open.
         cls: RViz 2's name of the tool's class, even if the file has RViz 1's.
-        section: the tool's section of the file; the section of an unknown class is kept unchanged.
+        section: the tool's section of the file, which stays unchanged if the class is unknown.
         properties: the values of the tool's properties.
     """
 
@@ -127,11 +130,11 @@ class ToolEntry:
 
 
 class ToolsConfig:
-    """The ``Tools`` of a file, or RViz's default tools if it lists none.
+    """The ``Tools`` of a file, or RViz's default tools if the file lists none.
 
     Args:
         document: the file.
-        report: called with values that cannot be used.
+        report: called with findings about values that cannot be used.
     """
 
     def __init__(self, document: Section, report: Callable[[Diagnostic], None]) -> None:
@@ -150,18 +153,18 @@ class ToolsConfig:
 
     @property
     def entries(self) -> list[ToolEntry]:
-        """The tools, in the order of their entries."""
+        """The tools, in the order of the toolbar."""
         return list(self._entries.values())
 
     def find(self, identity: str) -> ToolEntry | None:
-        """Return the tool with an id, or None."""
+        """Return the tool with an ID, or None if there is no such tool."""
         return self._entries.get(identity)
 
     def add(self, cls: str) -> ToolEntry:
-        """Add a tool at the end.
+        """Add a tool of a class at the end, write it to the file, and return it.
 
         Raises:
-            ValueError: there is no such class, or there are too many tools.
+            ValueError: there is no such class, or there are `MAXIMUM_TOOLS` tools already.
         """
         if len(self._entries) >= MAXIMUM_TOOLS:
             raise ValueError(f"there are {MAXIMUM_TOOLS} tools already")
@@ -200,7 +203,7 @@ class ToolsConfig:
         return section
 
     def _remember(self, written: str, section: Section) -> ToolEntry:
-        """List a tool under its class name of RViz 2 or RViz 1."""
+        """Append a tool to the entries, given its class name as written, of RViz 1 or RViz 2."""
         cls = modern_class(written)
         self._count += 1
         identity = f"tool-{self._count}"

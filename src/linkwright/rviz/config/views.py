@@ -1,8 +1,8 @@
-"""RViz's views: properties, current and saved views of a .rviz file, and sizes for a robot.
+"""RViz's views: the properties of each class, the views of a .rviz file, and sizes for a robot.
 
 The properties determine the rows of the Views panel, how ``Views`` is read and written, and how values from pages are
-checked. The page implements how each class turns its values into a camera, and how the mouse changes them, see
-`frontend/src/state/views`. Names and defaults are RViz's (rviz_common ``ViewController``, rviz_default_plugins).
+checked. The page implements the camera of each class and what the mouse does, see `frontend/src/state/views`. Names
+and defaults are RViz's (rviz_common ``ViewController``, rviz_default_plugins).
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ _LARGEST_FOCAL_SHAPE = 0.05
 
 @dataclass(frozen=True, slots=True)
 class ModelSize:
-    """The size of a robot and its typical link spacing, in metres.
+    """The size of a robot and the typical spacing of its links, in metres.
 
     Attributes:
-        diagonal: the diagonal of its bounding box.
-        spacing: the distance from a link's frame to its parent's frame, for most links.
+        diagonal: the diagonal of the robot's bounding box.
+        spacing: the typical distance from a link's frame to its parent's frame.
     """
 
     diagonal: float
@@ -45,34 +45,28 @@ class ModelSize:
 
     @property
     def distance(self) -> float:
-        """The distance in m from which all of the robot is visible, until a page has measured its meshes."""
+        """The camera distance in m that shows all of the robot, used until a page has measured its meshes."""
         return _rounded(2.0 * self.diagonal)
 
     @property
     def marker_scale(self) -> float:
-        """The scale at which TF's axes are visible next to the links without covering them."""
+        """The TF display's marker scale at which the axes are visible but do not cover the links."""
         axis = min(max(self.spacing / 2, self.diagonal / 40), self.diagonal / 10)
         return _rounded(axis / _RVIZ_AXIS)
 
     @property
     def focal_shape(self) -> float:
-        """The diameter of the disc at the focal point, m.
-
-        It is RViz's default for robots that are large enough.
-        """
+        """The diameter of the disc at the focal point, m; RViz's default for large robots."""
         return min(_LARGEST_FOCAL_SHAPE, _rounded(self.diagonal / 15))
 
     @property
     def cell(self) -> float:
-        """The grid's cell size in metres, a power of ten.
-
-        Ten cells are wider than the robot, but one is not much wider.
-        """
+        """The grid's cell size in metres: the largest power of ten that is at most 1.5 times the diagonal."""
         return float(10.0 ** math.floor(math.log10(self.diagonal * 1.5)))
 
 
 def _rounded(length: float) -> float:
-    """Return a length rounded to two digits, as a user would type it."""
+    """Return a length rounded to two significant digits, as a user would type it."""
     return float(f"{length:.2g}")
 
 
@@ -167,12 +161,15 @@ STAND_INS = {"rviz_default_plugins/FrameAligned": FPS}
 
 
 def value_paths(schema: Schema) -> dict[str, Path]:
-    """Return the properties that have a value, by their names joined with ``/``, as in `View.values`."""
+    """Return the paths of the properties that have a value, by key of `View.values`.
+
+    A key consists of the names of the path, joined with ``/``.
+    """
     return {"/".join(path): path for path, spec in _walk(schema, ()) if spec.kind != "group"}
 
 
 def view_classes() -> list[ViewClass]:
-    """Return the view classes for the page."""
+    """Return the view classes and their property rows, for the page."""
     return [
         ViewClass(cls, [_row(spec, ()) for spec in schema if not spec.hidden], _defaults(schema))
         for cls, schema in VIEW_SCHEMAS.items()
@@ -219,12 +216,12 @@ Report = Callable[[Diagnostic], None]
 class ViewEntry:
     """An entry of ``Views``; its unknown keys stay in the file.
 
-    A view of a class that `VIEW_SCHEMAS` lacks is shown as an Orbit, or as the class that replaces it, and stays
+    A view of a class that `VIEW_SCHEMAS` lacks is shown as the class that replaces it, or else as an Orbit, and stays
     unchanged in the file until a value is set.
 
     Args:
-        section: the file, or the view's part of it.
-        base: keys from the section to the view.
+        section: the file, or the view's section of it.
+        base: the keys from the section to the view.
         report: called with findings about an unknown class (RVIZ203) and unusable values (RVIZ201).
     """
 
@@ -242,10 +239,10 @@ class ViewEntry:
         return View(self._view.cls, self._view.name, dict(self._view.values))
 
     def set(self, view: View) -> None:
-        """Write a view; values that have not changed keep their spelling.
+        """Write a view to the file; values that have not changed keep their spelling.
 
         Raises:
-            ValueError: the view's class is unknown, or does not have one of the values.
+            ValueError: the name is too long, the class is unknown or has no such value, or a value is not accepted.
         """
         if view == self._view:
             return
@@ -268,7 +265,7 @@ class ViewEntry:
         self._view = self._read()
 
     def _write_class(self, cls: str) -> None:
-        """Change the class of the view, and remove the keys that only the former class has."""
+        """Change the class of the view, and remove the keys of the former class that the new one lacks."""
         scalar = self._section.scalar(*self._base, "Class")
         written = modern_class(scalar.text) if scalar else ""
         if cls in (written, STAND_INS.get(written)):
@@ -334,7 +331,7 @@ class ViewsConfig:
 
     @current.setter
     def current(self, view: View) -> None:
-        """Set the current view.
+        """Set the current view, and write it to the file.
 
         Raises:
             ValueError: the view is not valid.
@@ -343,7 +340,7 @@ class ViewsConfig:
 
     @property
     def saved(self) -> dict[str, View]:
-        """The saved views in file order, by an ID that is stable while the file is open."""
+        """The saved views in file order, by IDs that are stable while the file is open."""
         return {identity: entry.view for identity, (_, entry) in self._saved.items()}
 
     def save(self, view: View) -> str:

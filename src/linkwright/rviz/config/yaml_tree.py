@@ -1,7 +1,7 @@
 """YAML as a tree that is edited in place: untouched parts are written back as they were read.
 
-RViz's files contain much that this program does not know. The tree keeps PyYAML's nodes: key order, quoting and the
-spelling of every scalar survive, and every value has its line number.
+RViz's files contain much that this program does not know. The tree consists of PyYAML's nodes, so that key order,
+quoting and the spelling of every scalar survive, and every value has its line number.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class Scalar:
 
 @dataclass(frozen=True, slots=True)
 class Memory:
-    """The earlier value of a key; None if the key was missing."""
+    """The former value of a key in a mapping; None if the mapping did not have the key."""
 
     key: str
     value: yaml.Node | None
@@ -51,7 +51,7 @@ class Section:
     """A mapping in the file.
 
     A path of keys identifies a scalar. If a value has children, RViz stores the value itself under ``Value`` in the
-    same mapping; a path that ends at such a mapping refers to that value.
+    mapping of the children; a path that ends at such a mapping refers to that value.
     """
 
     def __init__(self, node: yaml.MappingNode, source: SourceText) -> None:
@@ -69,17 +69,17 @@ class Section:
         return [key.value for key, _ in self.node.value if isinstance(key, yaml.ScalarNode)]
 
     def scalar(self, *path: str) -> Scalar | None:
-        """Return the scalar at a path, or None if there is none or it is null."""
+        """Return the scalar at a path, or None if there is none or if the scalar is null."""
         node = self._scalar_node(path)
         return None if node is None else Scalar(node.value, self.span(node))
 
     def text(self, *path: str) -> str | None:
-        """Return the text of the scalar at a path; faster than `scalar`, which also returns the position."""
+        """Return the text of the scalar at a path, or None; faster than `scalar`, which adds the position."""
         node = self._scalar_node(path)
         return None if node is None else str(node.value)
 
     def section(self, *path: str) -> Section | None:
-        """Return the mapping at a path, or None."""
+        """Return the mapping at a path, or None if there is no mapping there."""
         node = self._find(path)
         return Section(node, self.source) if isinstance(node, yaml.MappingNode) else None
 
@@ -105,7 +105,7 @@ class Section:
         for key in path[:-1]:
             parent = _child_mapping(parent, key)
         there = _child(parent, path[-1])
-        # A scalar stays a scalar even if it has children: RViz 1 writes topics this way.
+        # RViz 1 writes a topic as a scalar, although its settings are children here.
         plain = isinstance(there, yaml.ScalarNode) and there.tag != _NULL
         if isinstance(there, yaml.MappingNode) or (nested and not plain):
             parent, last = _child_mapping(parent, path[-1]), "Value"
@@ -119,7 +119,7 @@ class Section:
         return Memory(key, None if there is None else _copy(there))
 
     def recall(self, memory: Memory) -> None:
-        """Restore the value of a key, or remove the key if it was added since."""
+        """Restore the former value of a key, or remove the key if it had none."""
         if memory.value is not None:
             _set(self.node, memory.key, _copy(memory.value))
             return
@@ -148,12 +148,12 @@ def parse(text: str, name: str) -> Section:
     """Return the root of a document, which must be a mapping.
 
     Raises:
-        LinkwrightError: RVIZ102, it is not YAML; RVIZ103, its root is not a mapping.
+        LinkwrightError: RVIZ102, the text is not YAML or is nested too deep; RVIZ103, its root is not a mapping.
     """
     source = SourceText(name, text)
     try:
         _check_depth(text, source)
-        # RViz reads only the first document.
+        # RViz reads only the first document of a file.
         root = next(yaml.compose_all(text, Loader=_Loader), None)
     except yaml.YAMLError as error:
         raise LinkwrightError(_not_yaml(error, source)) from None
@@ -220,21 +220,21 @@ def remove_section(parent: Section, key: str, section: Section) -> None:
 
 
 def entries(parent: Section, key: str) -> list[yaml.Node] | None:
-    """Return the items of the sequence under a key, not copied, or None if there is no sequence."""
+    """Return the item nodes of the sequence under a key, or None if the key has no sequence."""
     sequence = _child(parent.node, key)
     return list(sequence.value) if isinstance(sequence, yaml.SequenceNode) else None
 
 
 @dataclass(frozen=True, slots=True)
 class SequenceMemory:
-    """The value of the key of a sequence, with its items if it was a sequence; neither is copied."""
+    """The former node of a key, with its items if the node was a sequence; nothing is copied."""
 
     node: yaml.Node | None
     items: list[yaml.Node] | None
 
 
 def remember_sequence(parent: Section, key: str) -> SequenceMemory:
-    """Return the current value of the key of a sequence, for `recall_sequence`."""
+    """Return the current node of a key and the items of its sequence, for `recall_sequence`."""
     return SequenceMemory(_child(parent.node, key), entries(parent, key))
 
 
@@ -253,10 +253,10 @@ class NewSection:
     """A mapping that was created on demand, for `unmake`.
 
     Attributes:
-        holder: the mapping that contains it.
-        memory: the earlier value of the holder's key.
+        holder: the mapping that contains the new one.
+        memory: the former value of the holder's key.
         section: the new mapping itself.
-        keys: the keys that the mapping had when it was created.
+        keys: the keys that the new mapping had when it was created.
     """
 
     holder: Section
@@ -279,7 +279,10 @@ def make_section(section: Section, *path: str) -> tuple[Section, list[NewSection
 
 
 def unmake(new_sections: list[NewSection]) -> list[NewSection]:
-    """Remove new mappings that are still empty, from the last to the first changed one; return the rest."""
+    """Remove new mappings that have no added keys, and return the others.
+
+    The mappings are removed from the last to the first, until one of them has added keys.
+    """
     left = list(new_sections)
     while left and left[-1].section.keys() == left[-1].keys:
         gone = left.pop()
@@ -296,7 +299,10 @@ def ensure_section(section: Section, *path: str) -> Section:
 
 
 def _copy(node: yaml.Node, *, deep: bool = True) -> yaml.Node:
-    """Return a copy of a node, by default deep; the `copy` module cannot copy libyaml's marks."""
+    """Return a copy of a node, by default deep.
+
+    The `copy` module cannot copy libyaml's marks.
+    """
     if isinstance(node, yaml.ScalarNode):
         return yaml.ScalarNode(node.tag, node.value, node.start_mark, node.end_mark, node.style)
     assert isinstance(node, yaml.CollectionNode)
@@ -344,7 +350,7 @@ def _set(node: yaml.MappingNode, key: str, value: yaml.Node) -> None:
             return
     names = [name.value for name, _ in node.value if isinstance(name, yaml.ScalarNode)]
     ordered = len(names) == len(node.value) and names == sorted(names)
-    at = bisect(names, key) if ordered else len(names)  # RViz writes most of its keys in alphabetical order
+    at = bisect(names, key) if ordered else len(names)  # as in RViz, whose keys are mostly in alphabetical order
     node.value.insert(at, (yaml.ScalarNode(_STRING, key), value))
 
 
@@ -363,7 +369,7 @@ def _check_depth(text: str, source: SourceText) -> None:
 
 
 def _write_out_aliases(root: yaml.Node, source: SourceText) -> None:
-    """Replace each alias with a copy of its node, so that an edit of one place does not edit another."""
+    """Replace each alias with a copy of its node, so that an edit of one does not change the others."""
     seen: set[int] = set()
     count = 0
 
@@ -414,7 +420,7 @@ _INDENTED_ITEMS = re.compile(r"^( *)[^\s#-][^\n]*:[ \r]*\n\1 +- ", re.MULTILINE)
 
 
 def _laid_out(node: yaml.Node, source: str) -> str:
-    """Return a document as text in the layout of its source."""
+    """Return a node as text in the layout of a source text."""
     if not _INDENTED_ITEMS.search(source):
         return _plain(node)
     return _serialized(node, _RvizDumper if _EMPTY_BELOW.search(source) else _IndentingDumper)
@@ -431,14 +437,14 @@ def _serialized(node: yaml.Node, dumper: Any) -> str:
 
 
 class _IndentingDumper(yaml.SafeDumper):
-    """Writes YAML with indented sequence items."""
+    """A YAML dumper that indents the items of sequences."""
 
     def increase_indent(self, flow: bool = False, indentless: bool = False) -> None:
         super().increase_indent(flow, False)
 
 
 class _RvizDumper(_IndentingDumper):
-    """Uses RViz's layout, in which an empty mapping also has a line of its own."""
+    """A YAML dumper with RViz's layout, in which even an empty mapping is on a line of its own."""
 
     def expect_block_mapping_simple_value(self) -> None:
         if not (isinstance(self.event, yaml.MappingStartEvent) and self.check_empty_mapping()):

@@ -18,23 +18,23 @@ from linkwright.rviz.displays.base.display import DisplayHost, ViewerDisplay
 
 
 class GroupDisplay(ViewerDisplay):
-    """Contains other displays, and enables or disables all of them together."""
+    """A display that contains other displays, and enables or disables all of them together."""
 
     CLASS = GROUP_CLASS
 
 
 class UnsupportedDisplay(ViewerDisplay):
-    """A display whose class is unknown; it is kept in the file but not drawn."""
+    """A display whose class is not available; its entry stays in the file, but nothing is drawn."""
 
     CLASS = ""
     SUPPORTED = False
 
     def start(self) -> None:
-        """Show in the status that the display is not drawn."""
+        """Show in the status that displays of this class are not drawn."""
         self.enabled_changed()
 
     def enabled_changed(self) -> None:
-        """Show in the status that the display is not drawn, if the user enables it."""
+        """Show in the status that displays of this class are not drawn, if the display is enabled."""
         text = phrase("Displays of class '{name}' are kept in the file but not drawn", name=self.config.cls)
         self.set_status([StatusRow("Class", "warn", text)])
 
@@ -44,15 +44,12 @@ GROUP = "linkwright.displays"
 
 
 def has_display(cls: str) -> bool:
-    """Return whether a display class is supported, which means that it is drawn or is a group."""
+    """Return whether a display class has an entry point; groups have one too."""
     return cls in extensions(GROUP)
 
 
 def display_classes() -> list[type[ViewerDisplay]]:
-    """Return the display classes that are drawn, and the group class.
-
-    Classes that cannot be imported are left out.
-    """
+    """Return the display classes that can be imported, including the group class."""
     return [found for cls in extensions(GROUP) if isinstance(found := _display_class(cls), type)]
 
 
@@ -69,7 +66,7 @@ def make_display(host: DisplayHost, identity: str, config: DisplayConfig) -> Vie
 
 @cache
 def _display_class(cls: str) -> type[ViewerDisplay] | str:
-    """Return the class for a display name in .rviz files, or the reason why it cannot be loaded."""
+    """Return the class that an entry point names, or the reason why the class cannot be loaded."""
     try:
         found = extensions(GROUP)[cls].load()
     except Exception as error:  # noqa: BLE001  # of a package that is not ours anything may be wrong

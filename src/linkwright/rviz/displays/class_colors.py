@@ -44,7 +44,8 @@ _PALETTE: tuple[Color, ...] = (
 def class_color(name: str, table: Mapping[str, Color]) -> Color:
     """Return the colour of a detection class.
 
-    The colour comes from the table, vision_msgs_rviz_plugins, a colour in the name, or a palette.
+    The colour is taken from the table, or else from vision_msgs_rviz_plugins, from a colour word in the name, or from a
+    palette. Detections without a class have the colour `UNNAMED`.
     """
     if not name:
         return UNNAMED
@@ -54,12 +55,12 @@ def class_color(name: str, table: Mapping[str, Color]) -> Color:
 
 
 def read_class_colors(path: str) -> dict[str, Color]:
-    """Return the colour table in a YAML file, with names in lower case.
+    """Return the colour table in a YAML file, with class names in lower case.
 
     An entry is ``NAME: {r: 255, g: 165, b: 0}``.
 
     Raises:
-        ValueError: the file cannot be read, or is not such a table; the text gives the reason.
+        ValueError: the file cannot be read, or is not such a table; the message gives the reason.
     """
     try:
         document = yaml.safe_load(Path(path).expanduser().read_text(encoding="utf-8"))

@@ -117,9 +117,9 @@ COLOUR_PROPERTIES = frozenset(spec.name for spec in TRANSFORMER_SPECS) - {"Color
 
 
 def scalar_specs(channel: str, least: float, largest: float, *, inverted: bool | None = None) -> Schema:
-    """Return the properties of a display that shows one number as a coloured point.
+    """Return the properties of a display whose points are coloured by one number, such as a temperature.
 
-    RViz hides the properties that offer no choice.
+    The properties that offer no choice are hidden, as in RViz.
 
     Args:
         channel: the channel that contains the number.

@@ -115,13 +115,13 @@ DEPTH_SCHEMA_UNFILTERED: Schema = tuple(replace(spec, words=()) for spec in DEPT
 _SYNC_NS = 500_000_000
 """The largest time between a colour image and its depths, nanoseconds."""
 
-# If the pose changes by more than these, in metres and radians, the camera has moved.
+# The camera has moved if its pose changes by more than these values, in metres and radians.
 _MOVED = 0.01
 _TURNED = np.radians(0.5)
 
 
 class DepthCloudDisplay(CloudDisplay):
-    """The points of a depth image, coloured by a colour image if there is one."""
+    """A display of the points of a depth image, optionally coloured by a colour image."""
 
     CLASS = "rviz_default_plugins/DepthCloud"
     MESSAGE = "sensor_msgs/msg/Image"
@@ -145,20 +145,20 @@ class DepthCloudDisplay(CloudDisplay):
         self._camera_pose: Pose | None = None
 
     def subscription(self) -> tuple[str, str, QoSProfile]:
-        """Return the subscription to the depth image, which depends on its transport."""
+        """Return the message type, topic and QoS of the depth image, which depend on its transport."""
         source = self._depth_source()
         return source.message_type, source.topic, self._qos()
 
     def most_waiting(self) -> int:
-        """Return the maximum number of depth images that may wait for their transforms."""
+        """Return the maximum number of queued depth images, and of colour images that are stored."""
         return int(self.properties.number(QUEUE_SIZE))
 
     def pixel_size(self) -> float:
-        """Return the width of a pixel at a distance of one metre if points are drawn as large as pixels."""
+        """Return the width that a point has per metre of distance, or 0 if ``Auto Size`` is off."""
         return self._pixel * self.properties.number(AUTO_SIZE, SIZE_FACTOR) if self.properties.flag(AUTO_SIZE) else 0.0
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
-        """Show a depth image as soon as its colour image has arrived."""
+        """Show a depth image, or store it until its CameraInfo and its colour image have arrived."""
         assert pose is not None
         colour = self._colour_of(message) if self._wants_colour() else None
         if self._info is None or (colour is None and self._wants_colour()):
@@ -172,7 +172,7 @@ class DepthCloudDisplay(CloudDisplay):
         return DEPTH_SCHEMA if self._filters else DEPTH_SCHEMA_UNFILTERED
 
     def changed(self, path: Path) -> None:
-        """Subscribe to other topics, or redraw the last depth image."""
+        """Subscribe to other topics, apply the topic filter, or redraw the last depth image."""
         if path[0] in SOURCES:
             self._restart()
             return
@@ -184,14 +184,14 @@ class DepthCloudDisplay(CloudDisplay):
             self.show_again()
 
     def time_changed(self) -> None:
-        """Show the messages that were received while time was paused."""
+        """Show the messages that were queued while time was paused."""
         self._infos.resume()
         if self._colours is not None:
             self._colours.resume()
         super().time_changed()
 
     def reset(self) -> None:
-        """Discard all points, including those that occlusion compensation keeps."""
+        """Discard all points, including those stored for occlusion compensation."""
         self._builder.reset()
         self._camera_pose = None
         self._pending = None

@@ -1,4 +1,4 @@
-"""Displays an image overlaid with the boxes of a vision_msgs/Detection2DArray."""
+"""A display of images, overlaid with the boxes of a vision_msgs/Detection2DArray."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ _PATIENCE = 1.0
 
 
 class DetectionImageDisplay(ImageDisplay):
-    """Shows images with boxes around the detected objects, in their own panel.
+    """A display of images in a panel of their own, with boxes around the detected objects.
 
-    While detections arrive, each image is shown when the detections with the same stamp have arrived, so images are
-    delayed by the detector. Detections for an image that is no longer stored are drawn over the current image.
+    While detections arrive, each image is stored until the detections with the same stamp have arrived, so that images
+    are delayed by the detector. Detections for an image that is no longer stored are drawn over the current image.
     """
 
     CLASS = "linkwright/Detections"
@@ -78,7 +78,7 @@ class DetectionImageDisplay(ImageDisplay):
             self._threshold.set(self.properties.text(DETECTIONS).strip(), self.properties.number(THRESHOLD))
 
     def process_image(self, message: Any, pose: Pose | None) -> None:
-        """Show an image, or store it until its detections are received."""
+        """Store an image until its detections arrive, or show it if no detections arrived recently."""
         if asyncio.get_running_loop().time() - self._detected_at < _PATIENCE:
             self._images.append(message)
             return
@@ -87,7 +87,7 @@ class DetectionImageDisplay(ImageDisplay):
         super().process_image(message, pose)
 
     def time_changed(self) -> None:
-        """Show the messages that were received while time was paused."""
+        """Show the messages that were queued while time was paused."""
         self._side.resume()
         super().time_changed()
 
@@ -133,7 +133,12 @@ class DetectionImageDisplay(ImageDisplay):
 
 
 def _boxes(message: Any, *, of_image: bool) -> ImageBoxes | None:
-    """Return the boxes of a message, or None if a number is not finite."""
+    """Return the boxes of a Detection2DArray, or None if a number is not finite.
+
+    Args:
+        message: the detections.
+        of_image: whether the image of the detections is shown next.
+    """
     detections = list(message.detections)
     results = [best_result(detection) for detection in detections]
     middles = [detection.bbox.center for detection in detections]

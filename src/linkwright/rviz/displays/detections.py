@@ -46,7 +46,7 @@ _CLASSES: Schema = (
 
 
 class _BoxDisplay(RecentDisplay):
-    """Shows the boxes of the last message."""
+    """The base class of displays that show the boxes of the last message."""
 
     def _content(
         self, boxes: Sequence[Any], colors: Sequence[Color], scores: Sequence[float], names: Sequence[str]
@@ -60,9 +60,9 @@ class _BoxDisplay(RecentDisplay):
 
 
 def _numbers(pose: Any) -> tuple[float, ...]:
-    """Return a pose as x y z qx qy qz qw.
+    """Return a pose message as x y z qx qy qz qw.
 
-    A zero quaternion, the default in messages, means no rotation.
+    A zero quaternion, the default in messages, becomes the identity rotation.
     """
     position, turn = pose.position, pose.orientation
     w = turn.w if any((turn.x, turn.y, turn.z, turn.w)) else 1.0
@@ -70,14 +70,14 @@ def _numbers(pose: Any) -> tuple[float, ...]:
 
 
 class BoundingBox3DArrayDisplay(_BoxDisplay):
-    """Shows boxes in one colour."""
+    """A display of boxes in one colour."""
 
     CLASS = "vision_msgs_rviz_plugins/BoundingBox3DArray"
     MESSAGE = "vision_msgs/msg/BoundingBox3DArray"
     SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *_LOOK, _COLOUR)
 
     def content(self, message: Any) -> DataContent | None:
-        """Return the boxes of a message, to be drawn in one colour."""
+        """Return the boxes of a message, in white; pages draw them in the colour of the property."""
         boxes = self.boxes_of(message)
         return self._content(boxes, [(255, 255, 255)] * len(boxes), [-1.0] * len(boxes), [""] * len(boxes))
 
@@ -87,14 +87,14 @@ class BoundingBox3DArrayDisplay(_BoxDisplay):
 
 
 class BoundingBox3DDisplay(BoundingBox3DArrayDisplay):
-    """Shows a single box, in the Fixed Frame because its message has no header."""
+    """A display of a single box, placed in the Fixed Frame because the message has no header."""
 
     CLASS = "vision_msgs_rviz_plugins/BoundingBox3D"
     MESSAGE = "vision_msgs/msg/BoundingBox3D"
     SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *_LOOK, _COLOUR)
 
     def frame_of(self, message: Any) -> tuple[str, int]:
-        """Return the Fixed Frame and the latest time."""
+        """Return the Fixed Frame, and 0 for the latest time."""
         return self.host.frames.fixed_frame, 0
 
     def boxes_of(self, message: Any) -> Sequence[Any]:
@@ -105,7 +105,7 @@ class BoundingBox3DDisplay(BoundingBox3DArrayDisplay):
 def best_result(detection: Any) -> tuple[str, float]:
     """Return the class and score of the most likely hypothesis of a Detection2D or Detection3D.
 
-    Without hypotheses, return an empty class and -1.
+    If there are no hypotheses, return an empty class and a score of -1.
     """
     best = max(
         (result.hypothesis for result in detection.results), key=lambda hypothesis: hypothesis.score, default=None
@@ -114,7 +114,7 @@ def best_result(detection: Any) -> tuple[str, float]:
 
 
 class Detection3DArrayDisplay(_BoxDisplay):
-    """Shows detections as boxes in the colours of their classes."""
+    """A display of detections as boxes in the colours of their classes."""
 
     CLASS = "vision_msgs_rviz_plugins/Detection3DArray"
     MESSAGE = "vision_msgs/msg/Detection3DArray"
@@ -144,7 +144,7 @@ class Detection3DArrayDisplay(_BoxDisplay):
             self.show_again()
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
-        """Show the boxes for the duration that the property sets."""
+        """Show the boxes until the next message, or for the seconds of the lifetime property."""
         super().process_message(message, pose)
         self._cancel_end()
         seconds = int(self.properties.number(LIFETIME))
@@ -185,7 +185,7 @@ class Detection3DArrayDisplay(_BoxDisplay):
 
 
 class Detection3DDisplay(Detection3DArrayDisplay):
-    """Shows a single detection."""
+    """A display of a single detection."""
 
     CLASS = "vision_msgs_rviz_plugins/Detection3D"
     MESSAGE = "vision_msgs/msg/Detection3D"

@@ -1,4 +1,4 @@
-"""Sets the parameter of a detection node that filters out detections below a minimum score."""
+"""Sets the minimum score of detections at the node that publishes them."""
 
 from __future__ import annotations
 
@@ -20,11 +20,13 @@ StatusReport = Callable[[StatusLevel, str], None]
 
 
 class DetectorThreshold:
-    """Sets the minimum detection score at the publishing node; only the latest request counts.
+    """Sets the parameter of a detector node for the minimum score.
+
+    Requests are sent one at a time; a newer value replaces values that were not sent yet.
 
     Args:
         node: the node that sends requests.
-        report: called with the outcome of a request.
+        report: called with the status level and text for the outcome of a request.
     """
 
     def __init__(self, node: Node, report: StatusReport) -> None:
@@ -33,13 +35,13 @@ class DetectorThreshold:
         self._task: asyncio.Task[None] | None = None
 
     def set(self, topic: str, value: float) -> None:
-        """Set the minimum score at the publisher of a topic, if it has a parameter for it."""
+        """Set the minimum score at the node that publishes a topic, if that node has such a parameter."""
         self._wish = topic, value
         if self._task is None or self._task.done():
             self._task = asyncio.get_running_loop().create_task(self._fulfil())
 
     def close(self) -> None:
-        """Cancel requests."""
+        """Cancel pending requests."""
         self._wish = None
         if self._task is not None:
             self._task.cancel()

@@ -29,7 +29,7 @@ _TURNING = ("revolute", "continuous")
 
 
 class EffortDisplay(RecentDisplay):
-    """Shows joint torques as rings about the joint axes; the closer a torque is to its limit, the larger the ring.
+    """A display of joint torques as rings about the joint axes; a larger ring is closer to the limit.
 
     Revolute and continuous joints are drawn. RViz draws the torques of revolute joints only, and orients the rings
     incorrectly for axes other than z.
@@ -65,7 +65,7 @@ class EffortDisplay(RecentDisplay):
         super().__init__(host, identity, config)
 
     def schema(self) -> Schema:
-        """Return the fixed properties, and a check box for each joint that has a limit."""
+        """Return the fixed properties, and a check box for each revolute or continuous joint with a limit."""
         names = sorted(self._joints or ())
         boxes = tuple(
             PropertySpec(name, "bool", True, "Draw the ring of this joint.", nested=True, details="effort")
@@ -77,7 +77,7 @@ class EffortDisplay(RecentDisplay):
         )
 
     def start(self) -> None:
-        """Subscribe to the topic and to the robot's description."""
+        """Subscribe to the joint states and to the robot's description."""
         super().start()
         self._follow()
 
@@ -87,7 +87,7 @@ class EffortDisplay(RecentDisplay):
         super().stop()
 
     def changed(self, path: Path) -> None:
-        """Follow another robot description, or remove the rings that were drawn with the former prefix."""
+        """Subscribe to another robot description, or redraw the rings with a new frame prefix."""
         super().changed(path)
         if path == (_DESCRIPTION,):
             self._follow()
@@ -96,19 +96,25 @@ class EffortDisplay(RecentDisplay):
             self.frames_changed()
 
     def enabled_changed(self) -> None:
-        """Subscribe to the robot's description only while the display is enabled."""
+        """Subscribe to the joint states and the robot's description, or unsubscribe from both."""
         super().enabled_changed()
         self._follow()
 
     def frame_of(self, message: Any) -> tuple[str, int]:
-        """Return the frame of the first joint that is drawn, because joint states have no frame."""
+        """Return the frame of the first known joint of the message, because joint states have no frame.
+
+        If no joint is known, the frame is the Fixed Frame.
+        """
         stamp = message.header.stamp
         joint = next((self._joints[name] for name in message.name if self._joints and name in self._joints), None)
         frame = self.host.frames.fixed_frame if joint is None else self._frame(joint)
         return frame, stamp.nanoseconds
 
     def content(self, message: Any) -> DataContent | None:
-        """Return a ring for each joint whose frame has a known pose."""
+        """Return a ring for each joint with a finite effort and a known pose.
+
+        Return None, and show the reason in the status, if no rings can be drawn.
+        """
         if self._joints is None:
             self.refuse(phrase("Robot model might not be loaded yet"))
             return None

@@ -23,7 +23,7 @@ _REFERENCE = "Reference Frame"
 
 
 class AxesDisplay(ViewerDisplay):
-    """The axes of a frame: x red, y green, z blue."""
+    """A display of the axes of a frame: x red, y green, z blue."""
 
     CLASS = "rviz_default_plugins/Axes"
     SCHEMA = (
@@ -47,7 +47,7 @@ class AxesDisplay(ViewerDisplay):
 
 
 class GridDisplay(ViewerDisplay):
-    """A grid in a coordinate plane of a frame."""
+    """A display of a grid in a coordinate plane of a frame."""
 
     CLASS = "rviz_default_plugins/Grid"
     SCHEMA = (
@@ -91,13 +91,13 @@ class FrameFilter:
 
     Attributes:
         text: the expression.
-        problem: the reason why the expression is not valid, for the status; None if it is valid.
+        problem: the reason why the expression is not used, for the status; None if it is used.
     """
 
     def __init__(self, text: str = "") -> None:
         self.text = text
         self.problem: Phrase | None = None
-        self._expression: Expression | None = None  # imported here because few users write an expression
+        self._expression: Expression | None = None  # few users write one, so it is imported below
         self._known: set[str] = set()
         self._found: set[str] = set()
         if text:
@@ -110,11 +110,14 @@ class FrameFilter:
 
     @property
     def is_used(self) -> bool:
-        """Whether there is an expression to match."""
+        """Whether there is a valid expression to match."""
         return self._expression is not None
 
     def found_in(self, names: Collection[str]) -> set[str]:
-        """Return the names that match the expression; an empty set if matching takes too long."""
+        """Return the names that contain a match of the expression.
+
+        The set is empty if there is no valid expression, or if matching takes too long.
+        """
         if self._expression is not None:
             from linkwright.graph.names.expressions import TooCostlyError
 
@@ -152,9 +155,9 @@ _DEEPEST = 60
 
 
 class TfDisplay(ViewerDisplay):
-    """Shows the frames known to tf as axes, names and arrows.
+    """A display of all frames as axes, names and arrows to their parents.
 
-    The page itself implements RViz's read-only rows of a frame (parent, position, orientation), see `Property`.
+    The page itself adds RViz's read-only rows of a frame (parent, position, orientation), see `Property`.
     """
 
     CLASS = "rviz_default_plugins/TF"
@@ -174,11 +177,11 @@ class TfDisplay(ViewerDisplay):
         return self._schema
 
     def start(self) -> None:
-        """List the current frames."""
+        """Show the current frames."""
         self.frames_changed()
 
     def changed(self, path: Path) -> None:
-        """Apply a new filter, or the check box that enables or disables all frames."""
+        """Apply a new filter, a new frame timeout, or the check box of one frame or of all frames."""
         if path in _FILTERS:
             self.frames_changed()
         elif path == (FRAME_TIMEOUT,):
@@ -193,12 +196,12 @@ class TfDisplay(ViewerDisplay):
             self.pages.publish(PropertyChanged(self.property_id(_ALL), False))
 
     def enabled_changed(self) -> None:
-        """Show or hide the frames and their status, and update the time after which frames fade."""
+        """Update the status of the frames, and notify the host, which lets frames fade."""
         self.host.fading_changed()
         super().enabled_changed()
 
     def frames_changed(self) -> None:
-        """List the frames again, and show the status of each."""
+        """Update the rows of the frames if they have changed, and the status of each frame."""
         frames = self.host.frames
         shown = tuple(sorted(self._filtered(set(frames.names))))
         above = {
@@ -220,7 +223,10 @@ class TfDisplay(ViewerDisplay):
         return StatusRow(name, "warn", problem) if problem else StatusRow(name, "ok", phrase("Transform OK"))
 
     def _filtered(self, names: set[str]) -> set[str]:
-        """Return the names that pass the filters; an unused filter passes all."""
+        """Return the names that match the whitelist and do not match the blacklist.
+
+        A filter that is empty or not valid has no effect.
+        """
         only, without = (self.properties.text(*path) for path in _FILTERS)
         if only != self._only.text:
             self._only = FrameFilter(only)

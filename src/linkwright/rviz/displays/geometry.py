@@ -22,7 +22,7 @@ from linkwright.rviz.displays.base.topic_display import TOPIC, RecentDisplay, To
 
 
 class GridCellsDisplay(TopicDisplay):
-    """Shows flat cells of equal size."""
+    """A display of flat cells of equal size."""
 
     CLASS = "rviz_default_plugins/GridCells"
     MESSAGE = "nav_msgs/msg/GridCells"
@@ -33,7 +33,7 @@ class GridCellsDisplay(TopicDisplay):
     )
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
-        """Show the cells."""
+        """Show the cells of a message, or the reason why they cannot be drawn."""
         cells = [coordinate for cell in message.cells for coordinate in (cell.x, cell.y, cell.z)]
         positions = np.array(cells, dtype=np.float64).reshape(-1, 3)
         sides = (message.cell_width, message.cell_height)
@@ -48,13 +48,13 @@ class GridCellsDisplay(TopicDisplay):
             self.send(content, pose=pose, stamp_ns=self.frame_of(message)[1])
 
     def _refuse(self, level: StatusLevel, text: Phrase) -> None:
-        """Remove the cells, and show in the topic's row why the message cannot be drawn, as RViz does."""
+        """Remove the cells, and show the reason in the topic's status row, as RViz does."""
         self.forget()
         self.set_status_row(TOPIC, level, text)
 
 
 class PointStampedDisplay(RecentDisplay):
-    """Shows the last points of a topic as spheres, which keep their positions in the Fixed Frame."""
+    """A display of the last points of a topic as spheres, which keep their positions in the Fixed Frame."""
 
     CLASS = "rviz_default_plugins/PointStamped"
     MESSAGE = "geometry_msgs/msg/PointStamped"
@@ -68,13 +68,13 @@ class PointStampedDisplay(RecentDisplay):
     )
 
     def content(self, message: Any) -> DataContent | None:
-        """Return the point of a message."""
+        """Return the point of a message, or None if a coordinate is not finite."""
         point = np.array([[message.point.x, message.point.y, message.point.z]], dtype=np.float32)
         return PointMarks(point) if self.is_finite(point[0]) else None
 
 
 class PolygonDisplay(RecentDisplay):
-    """The last polygon of a topic, as a closed line."""
+    """A display of the last polygon of a topic as a closed line."""
 
     CLASS = "rviz_default_plugins/Polygon"
     MESSAGE = "geometry_msgs/msg/PolygonStamped"
@@ -85,14 +85,14 @@ class PolygonDisplay(RecentDisplay):
     )
 
     def content(self, message: Any) -> DataContent | None:
-        """Return the corners of the polygon in a message."""
+        """Return the corners of the polygon in a message, or None if a coordinate is not finite."""
         corners = [(point.x, point.y, point.z) for point in message.polygon.points]
         points = np.array(corners, dtype=np.float32).reshape(-1, 3)
         return PolygonLine(points) if self.is_finite(points) else None
 
 
 class RangeDisplay(RecentDisplay):
-    """Shows the last measurements of a range sensor, each as a cone with the sensor's field of view."""
+    """A display of the last measurements of a range sensor as cones with its field of view."""
 
     CLASS = "rviz_default_plugins/Range"
     MESSAGE = "sensor_msgs/msg/Range"
@@ -111,7 +111,10 @@ class RangeDisplay(RecentDisplay):
 
 
 def _cone_length(message: Any) -> float:
-    """Return the length of the cone by RViz's rule, which follows REP 117 for fixed-distance sensors."""
+    """Return the length of the cone in metres by RViz's rule, which follows REP 117.
+
+    The rule differs for fixed-distance sensors, whose minimum and maximum range are equal.
+    """
     measured, least, most = float(message.range), float(message.min_range), float(message.max_range)
     if least <= measured <= most and math.isfinite(measured):
         return measured

@@ -27,11 +27,14 @@ _SIZE = "Size"
 
 
 class BadGridError(ValueError):
-    """Raised when a grid map cannot be drawn; the text gives the reason."""
+    """Raised when a grid map cannot be drawn; the message gives the reason."""
 
 
 class GridMapDisplay(RecentDisplay):
-    """Shows the last grid maps of a topic as surfaces: one layer sets the heights, another the colours."""
+    """A display of the last grid maps of a topic as surfaces.
+
+    One layer sets the heights, another the colours.
+    """
 
     CLASS = "grid_map_rviz_plugin/GridMap"
     MESSAGE = "grid_map_msgs/msg/GridMap"
@@ -91,7 +94,7 @@ class GridMapDisplay(RecentDisplay):
         )
 
     def content(self, message: Any) -> DataContent | None:
-        """Return the surface of a grid map."""
+        """Return the surface of a grid map, or None if the map cannot be drawn."""
         try:
             made = self._surface(message)
         except BadGridError as error:
@@ -101,7 +104,7 @@ class GridMapDisplay(RecentDisplay):
         return made
 
     def changed(self, path: Path) -> None:
-        """Redraw the last map if a property changes that the page does not apply itself."""
+        """Redraw the last map, unless the page applies the changed property itself."""
         super().changed(path)
         if path[0] not in ("Topic", "Alpha", "Show Grid Lines", "History Length"):
             self.reset()
@@ -174,10 +177,12 @@ def _rgb(text: str) -> NDArray[np.uint8]:
 
 
 class _Grid:
-    """The cells of a grid_map_msgs/msg/GridMap: row 0 has the largest x, column 0 the largest y.
+    """The cells of a grid_map_msgs/msg/GridMap.
+
+    Row 0 has the largest x, and column 0 the largest y.
 
     Raises:
-        BadGridError: a size is not finite and positive, or lists have different lengths.
+        BadGridError: the resolution, the lengths or the pose are not valid, or the numbers of layers and data differ.
     """
 
     def __init__(self, message: Any) -> None:
@@ -234,7 +239,10 @@ class _Grid:
         return np.ascontiguousarray(np.roll(cells, begin, axis=(0, 1)))
 
     def points(self, heights: NDArray[np.floating[Any]]) -> NDArray[np.float64]:
-        """Return the cell centres at the given heights, metres, in the map's frame, shape (rows, columns, 3)."""
+        """Return the cell centres at the given heights, in the message's frame.
+
+        The heights are in metres and relative to the map's pose. The result has the shape (rows, columns, 3).
+        """
         rows, columns = self.shape
         along = (rows / 2.0 - 0.5 - np.arange(rows)) * self._resolution
         across = (columns / 2.0 - 0.5 - np.arange(columns)) * self._resolution

@@ -1,4 +1,4 @@
-"""Image and Camera: displays for the images of a topic, raw or compressed."""
+"""The displays Image and Camera, which show the images of a topic, raw or compressed."""
 
 from __future__ import annotations
 
@@ -38,10 +38,10 @@ MOST_PIXELS = 2_100_000
 
 
 class ImageTopicDisplay(TopicDisplay):
-    """Shows the images of a topic. As in RViz, the suffix of the topic name selects the transport.
+    """The base class of displays of a topic's images.
 
-    Images on ``/compressed`` topics are files that browsers can read. They are sent to the page unchanged, unless their
-    values have more than 8 bits.
+    As in RViz, the suffix of the topic name selects the transport. Images on ``/compressed`` topics are in file formats
+    that browsers can decode. They are sent to the page unchanged, unless their values have more than 8 bits.
     """
 
     MESSAGE = "sensor_msgs/msg/Image"
@@ -55,16 +55,16 @@ class ImageTopicDisplay(TopicDisplay):
 
     @classmethod
     def messages_shown(cls) -> tuple[str, ...]:
-        """Return the types of raw and compressed images."""
+        """Return the message types of raw and compressed images."""
         return (cls.MESSAGE, "sensor_msgs/msg/CompressedImage")
 
     def subscription(self) -> tuple[str, str, QoSProfile]:
-        """Return the type, topic and QoS of the subscription, which depend on the transport."""
+        """Return the message type, topic and QoS to subscribe with, which depend on the transport."""
         source = self._named_source()
         return source.message_type, source.topic, super().subscription()[2]
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
-        """Show an image, or the reason why it cannot be decoded."""
+        """Decode an image and show it, or show the reason why it cannot be decoded."""
         try:
             image = self._image_of(message)
         except BadImageError as error:
@@ -88,7 +88,13 @@ class ImageTopicDisplay(TopicDisplay):
         super().reset()
 
     def show_image(self, message: Any, camera: CameraModel | None = None, pose: Pose | None = None) -> None:
-        """Send an image, or show the reason why it cannot be drawn."""
+        """Send an image to the pages, or show the reason why it cannot be drawn.
+
+        Args:
+            message: see `process_image`.
+            camera: the camera of the image, or None.
+            pose: the pose of the image's frame in the Fixed Frame, or None.
+        """
         try:
             content = self._frame(message, camera)
         except BadImageError as error:
@@ -107,7 +113,10 @@ class ImageTopicDisplay(TopicDisplay):
         return 1
 
     def _named_source(self) -> ImageSource:
-        """Return the topic and transport that the topic property selects, and the message type if it is known."""
+        """Return the topic and transport that the topic property selects.
+
+        The result includes the message type if the topic has a publisher.
+        """
         source = ImageSource.of(self.properties.text(TOPIC))
         if not source.topic:
             return source
@@ -166,7 +175,7 @@ class ImageTopicDisplay(TopicDisplay):
 
 
 def _is_readable(start: bytes) -> bool:
-    """Return whether the data starts like a JPEG, PNG, GIF, BMP or WebP file."""
+    """Return whether data starts with the signature of a JPEG, PNG, GIF, BMP or WebP file."""
     return start.startswith((b"\xff\xd8\xff", b"\x89PNG", b"GIF8", b"BM")) or start[8:12] == b"WEBP"
 
 
@@ -192,7 +201,7 @@ _TOPIC_SPEC = topic_spec(
 
 
 class ImageDisplay(ImageTopicDisplay):
-    """Shows images in their own panel.
+    """A display of images in a panel of their own.
 
     As in RViz, the properties of the value range appear once an image has values of more than 8 bits.
     """
@@ -207,15 +216,14 @@ class ImageDisplay(ImageTopicDisplay):
 
     @property
     def _is_hidden(self) -> bool:
-        """Whether pages have reported the sizes of their panels, and no panel is visible."""
+        """Whether pages have reported their panels and none of these is visible."""
         return self._panel is not None and (self._panel.width <= 0 or self._panel.height <= 0)
 
     def receive(self, message: Any) -> None:
-        """Handle a page's report of its panel size, and send no more pixels than the panels show.
+        """Handle the size of the largest panel, and send no more pixels than it shows.
 
-        While no panel is visible, the display unsubscribes after the next image. Cameras that publish only while they
-        have
-        subscribers then publish no images for a hidden panel.
+        While no panel is visible, the display unsubscribes after its first image. A camera that publishes only while it
+        has subscribers then publishes no images for a hidden panel.
         """
         before, self._panel = self._panel, message
         if self._is_hidden:
@@ -224,27 +232,27 @@ class ImageDisplay(ImageTopicDisplay):
             return
         if self.enabled and self._subscription is None:
             self._subscribe()
-            if self.last is not None:  # the previous image is still shown
+            if self.last is not None:  # the former image is still shown
                 self._count = 1
                 self._report_count()
         if before is not None and (message.width > before.width or message.height > before.height):
             self.show_again()
 
     def reduction(self, width: int, height: int) -> int:
-        """Return the largest reduction at which panels do not lose detail."""
+        """Return the largest block size at which no panel loses detail."""
         panel = self._panel
         if panel is None or panel.width <= 0 or panel.height <= 0:
             return 1
         return max(1, int(max(width / panel.width, height / panel.height)))
 
     def schema(self) -> Schema:
-        """Return the properties; the value range is included only for images that have one."""
+        """Return the properties; those of the value range are hidden unless the last image has one."""
         if self._ranged:
             return self.SCHEMA
         return (_TOPIC_SPEC, *(replace(spec, hidden=True) for spec in _RANGE_SPECS))
 
     def process_image(self, message: Any, pose: Pose | None) -> None:
-        """Show an image."""
+        """Show an image, or unsubscribe if no panel is visible."""
         if self._is_hidden:
             self._unsubscribe()
             return
@@ -259,7 +267,7 @@ class ImageDisplay(ImageTopicDisplay):
         self.show_image(message)
 
     def changed(self, path: Path) -> None:
-        """Show the image with a new value range."""
+        """Subscribe again, or show the last image with a new value range."""
         super().changed(path)
         if any(spec.name == path[0] for spec in _RANGE_SPECS):
             self.show_again()
@@ -298,7 +306,10 @@ _SPECS: Schema = (
 
 
 class CameraDisplay(ImageTopicDisplay):
-    """Shows the scene as seen by a camera, with the camera's image behind or over it, in its own panel."""
+    """A display of the scene as seen by a camera, in a panel of its own.
+
+    The camera's image is drawn behind the scene, over it, or both.
+    """
 
     CLASS = "rviz_default_plugins/Camera"
     SCHEMA = _SPECS
@@ -322,14 +333,17 @@ class CameraDisplay(ImageTopicDisplay):
         return (*_SPECS, check_box)
 
     def arranged(self, displays: Sequence[ViewerDisplay]) -> None:
-        """Update the check boxes, one for each of the other displays."""
+        """Update the check boxes of the other displays."""
         boxes = self._boxes_of(displays, None)
         if boxes != self._boxes:
             self._boxes = boxes
             self.publish_properties()
 
     def _boxes_of(self, displays: Sequence[ViewerDisplay], group: DisplayConfig | None) -> Schema:
-        """Return a check box for each display of a group, by name; check boxes of subgroups are nested."""
+        """Return a check box for each other display in a group, with those of subgroups as children.
+
+        Of several displays with the same name, only the first has a check box. `group` is None for the top level.
+        """
         found: dict[str, PropertySpec] = {}
         for display in displays:
             config = display.config
@@ -341,16 +355,16 @@ class CameraDisplay(ImageTopicDisplay):
         return tuple(found.values())
 
     def most_waiting(self) -> int:
-        """Return RViz's limit on waiting messages; the display has no property for it."""
+        """Return RViz's fixed maximum of queued messages; the display has no property for it."""
         return _MOST_WAITING
 
     def process_image(self, message: Any, pose: Pose | None) -> None:
-        """Show an image as soon as the camera's parameters are known."""
+        """Show an image, with the camera's parameters if they are known."""
         camera = self._model(message)
         self.show_image(message, camera, pose)
 
     def time_changed(self) -> None:
-        """Show the messages that were received while time was paused."""
+        """Show the messages that were queued while time was paused."""
         self._infos.resume()
         super().time_changed()
 
@@ -381,7 +395,10 @@ class CameraDisplay(ImageTopicDisplay):
             self.show_again()
 
     def _model(self, image: Any) -> CameraModel | None:
-        """Return the camera model of an image; if it is not known, show the reason in the status and return None."""
+        """Return the camera model for an image, or None if there is no valid CameraInfo.
+
+        If the CameraInfo is not valid, the reason is shown in the status.
+        """
         info = self._info
         if info is None:
             return None

@@ -28,7 +28,7 @@ _EVENTS = {"pose_update": 1, "menu_select": 2, "button_click": 3, "mouse_down": 
 
 
 class InteractiveMarkersDisplay(DataDisplay):
-    """Shows the markers of an interactive marker server, and sends the user's actions on them to the server."""
+    """A display of the markers of an interactive marker server, to which the user's actions are sent."""
 
     CLASS = "rviz_default_plugins/InteractiveMarkers"
     MESSAGE = "visualization_msgs/msg/InteractiveMarkerUpdate"
@@ -74,11 +74,11 @@ class InteractiveMarkersDisplay(DataDisplay):
             self.reset()
 
     def enabled_changed(self) -> None:
-        """Connect to the server, or disconnect from it."""
+        """Connect to the server if the display is enabled, or disconnect."""
         self.reset()
 
     def reset(self) -> None:
-        """Discard all markers and connect again."""
+        """Discard all markers, and connect again if the display is enabled."""
         self._disconnect()
         if self.enabled:
             self._connect()
@@ -89,7 +89,7 @@ class InteractiveMarkersDisplay(DataDisplay):
             self._show(name)
 
     def time_changed(self) -> None:
-        """Show the server's messages that were received while time was paused."""
+        """Apply the updates from the server that were queued while time was paused."""
         if not self.host.time.paused:
             held, self._held = self._held, []
             for handle in held:
@@ -199,7 +199,7 @@ class InteractiveMarkersDisplay(DataDisplay):
         if moved.header.frame_id:
             marker.header = moved.header
         if not same_frame or not _is_latest(marker):
-            self._show(moved.name)  # the marker's frame has moved
+            self._show(moved.name)  # the pose is relative to another frame or time
         elif moved.name not in self._unplaced:
             content = InteractiveMarkerMoved(moved.name, pose)
             self.send(content, key=f"pose {moved.name}", frame=marker.header.frame_id.removeprefix("/"))
@@ -238,7 +238,11 @@ class InteractiveMarkersDisplay(DataDisplay):
         self.send(shape, key=f"marker {name}", frame=frame, pose=at)
 
     def _frame_pose(self, marker: Any, frame: str) -> Pose | None:
-        """Return the pose of the marker's frame at the marker's time, or None if the marker has no timestamp."""
+        """Return the pose of the marker's frame at its stamp, or None if pages use the latest transform.
+
+        Raises:
+            TransformException: the transform is not available.
+        """
         fixed_frame = self.host.frames.fixed_frame
         stamp = marker.header.stamp
         pose = self.context.transforms.pose(fixed_frame, frame, stamp.nanoseconds)

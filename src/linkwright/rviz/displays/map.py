@@ -69,9 +69,10 @@ _SCHEMA: Schema = (
 
 
 class MapDisplay(TopicDisplay):
-    """Shows an occupancy grid, with partial updates.
+    """A display of an occupancy grid, which partial updates change.
 
-    The map follows its frame. If the timestamp is used, the map stays at the pose that its frame had at the map's time.
+    By default the map follows its frame. With ``Use Timestamp``, the map stays at the pose that its frame had at the
+    map's stamp.
     """
 
     CLASS = "rviz_default_plugins/Map"
@@ -83,22 +84,22 @@ class MapDisplay(TopicDisplay):
         self._updates = SideTopic(host, "map_msgs/msg/OccupancyGridUpdate", self._updated)
         self._map: Any = None
         self._cells: NDArray[np.uint8] = np.empty((0, 0), np.uint8)
-        self._is_own = False  # if False, other displays share the message's cells
+        self._is_own = False  # while False, other displays may share the cells
         self._pose: Pose | None = None
         self._sent_at = 0.0
         self._sending: asyncio.TimerHandle | None = None
         self._follow_topic(file_too=False)
 
     def frame_of(self, message: Any) -> tuple[str, int]:
-        """Return the map's frame, by default ``map``, and the time of its pose.
+        """Return the map's frame, by default ``map``, and the time of the frame's pose in nanoseconds.
 
-        The time is 0, which means the latest one, unless the timestamp is used.
+        The time is 0, which means the latest transform, unless the timestamp is used.
         """
         frame, stamp_ns = super().frame_of(message)
         return frame or "map", stamp_ns if self.properties.flag(_USE_TIMESTAMP) else 0
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
-        """Show a map; when the same map is shown again, the updates applied to it are kept."""
+        """Show a map; updates that were applied to the map are preserved if it is shown again."""
         self._pose = pose
         if message is not self._map and not self._load(message):
             return
@@ -121,7 +122,7 @@ class MapDisplay(TopicDisplay):
         self._follow_topic(file_too=False)
 
     def frames_changed(self) -> None:
-        """Show in the status whether the map's pose is known now."""
+        """Place the map in a new Fixed Frame, and show in the status whether the map's pose is known."""
         super().frames_changed()
         if self._map is None or self.properties.flag(_USE_TIMESTAMP):
             return
@@ -130,12 +131,12 @@ class MapDisplay(TopicDisplay):
         self.set_status_row(TRANSFORM, "error" if problem else "ok", problem or phrase("Transform OK"))
 
     def time_changed(self) -> None:
-        """Show the map and the updates that were received while time was paused."""
+        """Show the map and the updates that were queued while time was paused."""
         super().time_changed()
         self._updates.resume()
 
     def reset(self) -> None:
-        """Clear the map; after a change of topic, discard the former topic's map."""
+        """Remove the map from the pages; if the topic has changed, also discard the map itself."""
         if self._sending is not None:
             self._sending.cancel()
             self._sending = None
@@ -144,7 +145,7 @@ class MapDisplay(TopicDisplay):
         super().reset()
 
     def stop(self) -> None:
-        """Stop listening."""
+        """Unsubscribe, and cancel a scheduled update of the pages."""
         super().stop()
         if self._sending is not None:
             self._sending.cancel()
@@ -153,7 +154,8 @@ class MapDisplay(TopicDisplay):
     def _follow_topic(self, *, file_too: bool) -> None:
         """Derive the update topic from the map's topic, as RViz does.
 
-        An update topic that the file names is replaced only with `file_too`. A file that names none stays without one.
+        If the file names an update topic, that topic is replaced only with `file_too`. If the file names none, the
+        derived topic is not written to the file.
         """
         topic = self.properties.text(TOPIC).strip()
         updates = f"{topic}_updates" if topic else ""
@@ -225,7 +227,7 @@ class MapDisplay(TopicDisplay):
         self._send_soon()
 
     def _send_soon(self) -> None:
-        """Send the map after a short delay, so that several updates are sent as one map."""
+        """Schedule sending the map, so that several updates are sent as one map."""
         if self._sending is None:
             wait = max(0.0, self._sent_at + _UPDATE_PERIOD - time.monotonic())
             self._sending = asyncio.get_running_loop().call_later(wait, self._send_updated)
@@ -263,14 +265,14 @@ def _size_mismatch(grid: Any, cells: NDArray[np.uint8]) -> Phrase:
 
 
 def _pose_of(origin: Any) -> list[float]:
-    """Return the pose as x y z qx qy qz qw; a quaternion of zeros means no rotation."""
+    """Return a pose message as x y z qx qy qz qw; a zero quaternion becomes the identity rotation."""
     p, q = origin.position, origin.orientation
     turn = [q.x, q.y, q.z, q.w]
     return [p.x, p.y, p.z, *(turn if any(turn) else [0.0, 0.0, 0.0, 1.0])]
 
 
 def _readings(info: Any) -> Iterator[tuple[Path, float | int]]:
-    """Yield the paths and values of the read-only properties from a nav_msgs/msg/MapMetaData."""
+    """Yield the path and value of each read-only property, from a nav_msgs/msg/MapMetaData."""
     yield ("Resolution",), float(info.resolution)
     yield ("Width",), info.width
     yield ("Height",), info.height

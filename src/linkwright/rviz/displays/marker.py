@@ -30,7 +30,7 @@ _DUPLICATES = "Duplicate Marker Check"
 
 
 class _Marker:
-    """A received marker and the time at which it expires, in nanoseconds of the node's clock."""
+    """A received marker, and the time at which it expires in nanoseconds of the node's clock, or None."""
 
     def __init__(self, reading: MarkerReading, message: Any, expires_ns: int | None) -> None:
         self.reading = reading
@@ -41,10 +41,10 @@ class _Marker:
 
 
 class MarkerDisplay(StoredMarkersDisplay):
-    """Shows the markers of a topic.
+    """A display of the markers of a topic.
 
-    A marker whose frame has no known pose is shown once the pose is known. At most ``Filter size`` markers wait for
-    their poses; the oldest ones are dropped first.
+    A marker whose frame has no known pose is shown once the pose is known. At most ``Filter size`` markers are queued
+    until their poses are known; the oldest ones are dropped first.
     """
 
     CLASS = "rviz_default_plugins/Marker"
@@ -57,13 +57,13 @@ class MarkerDisplay(StoredMarkersDisplay):
         super().__init__(host, identity, config)
         self._markers: dict[str, _Marker] = {}
         self._unplaced: set[str] = set()
-        self._arriving: dict[str, None] = {}  # markers not placed yet, oldest first
-        self._frame_poses: dict[tuple[str, int], Transform] = {}  # cached, because arrays have thousands of equal keys
+        self._arriving: dict[str, None] = {}  # new markers without a known pose, oldest first
+        self._frame_poses: dict[tuple[str, int], Transform] = {}  # a cache: thousands of markers may share a key
         self._expiry: asyncio.TimerHandle | None = None
         self._clock = host.context.node.get_clock()
 
     def schema(self) -> Schema:
-        """Return the topic property, and a check box for each namespace received."""
+        """Return the topic property, and a check box for each namespace of the markers received so far."""
         boxes = tuple(
             PropertySpec(name, "bool", True, "Show the markers of this namespace.") for name in self._namespaces
         )
@@ -73,14 +73,14 @@ class MarkerDisplay(StoredMarkersDisplay):
         )
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
-        """Apply the action of a marker."""
+        """Apply the action of a marker: add, delete, or delete all."""
         self._do(message)
         while len(self._arriving) > self.most_waiting():
             self._remove(next(iter(self._arriving)))
         self._show()
 
     def changed(self, path: Path) -> None:
-        """Apply a changed property, such as the check box that enables or disables all namespaces."""
+        """Subscribe again if necessary, or enable or disable all namespaces."""
         super().changed(path)
         if path == (_NAMESPACES,):
             value = self.properties.flag(_NAMESPACES)
@@ -98,7 +98,7 @@ class MarkerDisplay(StoredMarkersDisplay):
         self._show()
 
     def stop(self) -> None:
-        """Stop listening, and withdraw from pages the files that markers referred to."""
+        """Unsubscribe, and withdraw the pages' access to the files that markers referred to."""
         super().stop()
         if self._expiry is not None:
             self._expiry.cancel()
@@ -112,7 +112,7 @@ class MarkerDisplay(StoredMarkersDisplay):
             self._show()
 
     def transforms_received(self) -> None:
-        """Place the markers that had no transform until now."""
+        """Place the markers whose transforms were not available until now."""
         if self._unplaced:
             for identity in list(self._unplaced):
                 self._place_marker(identity, self._markers[identity])
@@ -227,7 +227,10 @@ class MarkerDisplay(StoredMarkersDisplay):
 
 
 class MarkerArrayDisplay(MarkerDisplay):
-    """Shows markers received in arrays. Any number of them may wait for their frames, whereas RViz drops them."""
+    """A display of markers that are received in arrays.
+
+    Any number of markers are queued until their poses are known, whereas RViz drops such markers.
+    """
 
     CLASS = "rviz_default_plugins/MarkerArray"
     MESSAGE = "visualization_msgs/msg/MarkerArray"
@@ -278,7 +281,7 @@ class MessageMarkersDisplay(MarkerArrayDisplay, ABC):
         """
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
-        """Draw the markers of a message."""
+        """Replace the markers of the previous message by those of this message."""
         made = list(self.markers(message))
         header = getattr(message, "header", None)
         for marker in made:
@@ -292,7 +295,7 @@ class MessageMarkersDisplay(MarkerArrayDisplay, ABC):
         self._show()
 
     def changed(self, path: Path) -> None:
-        """Redraw the last message."""
+        """Apply a changed property, and draw the last message again."""
         super().changed(path)
         if path[0] not in (TOPIC, _NAMESPACES):
             self.show_again()

@@ -34,7 +34,7 @@ _MAP = "Octomap"
 
 
 class OctomapDisplay(StoredMarkersDisplay):
-    """Shows the octomap of a topic as boxes, at the current pose of the frame in its header."""
+    """A display of an octomap as boxes, at the current pose of the frame in the message's header."""
 
     CLASS = "octomap_rviz_plugins/OccupancyGrid"
     MESSAGE = "octomap_msgs/msg/Octomap"
@@ -63,7 +63,7 @@ class OctomapDisplay(StoredMarkersDisplay):
         self._frame = ""
 
     def subscription(self) -> tuple[str, str, QoSProfile]:
-        """Return the type, the topic and the QoS of the subscription."""
+        """Return the message type, topic and QoS to subscribe with."""
         return self.MESSAGE, self.properties.text(_TOPIC).strip(), qos_of(self.properties, _TOPIC)
 
     def changed(self, path: Path) -> None:
@@ -116,7 +116,10 @@ class OctomapDisplay(StoredMarkersDisplay):
         self.frames_changed()
 
     def _chosen(self, cells: Cells, resolution: float) -> Cells:
-        """Return the cells to draw; cells below the maximum depth are merged into larger ones."""
+        """Return the cells to draw: those of the selected kind and height, no smaller than the depth allows.
+
+        Smaller cells are merged, and the merged cell has the largest of their probabilities.
+        """
         cells = rendered(cells, self.properties.text("Voxel Rendering"))
         height = cells.centers[:, 2]
         lowest, highest = (self.properties.number(f"{which}. Height Display") for which in ("Min", "Max"))

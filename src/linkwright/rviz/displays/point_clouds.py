@@ -64,7 +64,7 @@ class CloudDisplay(TopicDisplay):
     """The base class of displays that draw points.
 
     The colours are computed here and sent with the positions; the page applies style, size and opacity. With a Decay
-    Time, the points of each message are sent separately and removed after that time.
+    Time, the points of each message are sent separately, and are removed after that time.
     """
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
@@ -78,14 +78,11 @@ class CloudDisplay(TopicDisplay):
         self._computed: dict[str, tuple[float, float]] = {}
 
     def pixel_size(self) -> float:
-        """Return the size of a point per metre of depth that makes the point as large as a camera pixel.
-
-        A size of 0 means that the properties set the size.
-        """
+        """Return the width that a point has per metre of distance, or 0 to use the size of the properties."""
         return 0.0
 
     def choose_transformer(self, transformer: str) -> None:
-        """Select a colour transformer that the messages support; the file's value is not changed."""
+        """Select a colour transformer that the messages support; the file stays unchanged."""
         if self.properties.set_read_only((COLOUR_TRANSFORMER,), transformer):
             self.publish_properties()
 
@@ -103,7 +100,13 @@ class CloudDisplay(TopicDisplay):
         )
 
     def show(self, points: Points, pose: Pose, stamp_ns: int) -> None:
-        """Show points at the pose of their frame, and keep earlier points for the Decay Time."""
+        """Show points at the pose of their frame, in addition to points within the Decay Time.
+
+        Args:
+            points: the points.
+            pose: the pose of their frame in the Fixed Frame.
+            stamp_ns: the stamp of the message, ns.
+        """
         self._offer_transformers(points)
         now = time.monotonic()
         decay = self.properties.number(DECAY_TIME)
@@ -120,7 +123,7 @@ class CloudDisplay(TopicDisplay):
         self._count_points()
 
     def changed(self, path: Path) -> None:
-        """Recolour the points, or apply the Decay Time."""
+        """Subscribe again if necessary, colour the points again, or apply the Decay Time."""
         super().changed(path)
         if path == (AUTO_INTENSITY,):
             self._keep_bounds(AUTO_INTENSITY, *((name,) for name in INTENSITY_BOUNDS))
@@ -140,12 +143,17 @@ class CloudDisplay(TopicDisplay):
         super().reset()
 
     def stop(self) -> None:
-        """Stop listening."""
+        """Unsubscribe, and cancel timers."""
         self._cancel()
         super().stop()
 
     def fields_of(self, key: str, index: int) -> dict[str, float | str] | None:
-        """Return a visible point's values other than its coordinates, or None if the point is no longer visible."""
+        """Return the channels of a point by name, or None if the point is no longer shown.
+
+        Args:
+            key: the key under which the points were sent.
+            index: the index of the point among the points of this key.
+        """
         shown = next((shown for shown in self._shown if shown.key == key), None)
         if shown is None or not 0 <= index < len(shown.points):
             return None
@@ -186,7 +194,7 @@ class CloudDisplay(TopicDisplay):
             self.choose_transformer(transformers[0])
 
     def _keep_bounds(self, auto: str, *paths: Path) -> None:
-        """Store the last computed bounds in the properties when automatic bounds are switched off."""
+        """Set the bounds in the properties to the last computed ones if computing them was switched off."""
         computed = self._computed.get(auto)
         if computed is None or self.properties.flag(auto):
             return
@@ -197,7 +205,7 @@ class CloudDisplay(TopicDisplay):
     # --- decay -------------------------------------------------------------------------------------------------
 
     def _expire(self) -> None:
-        """Remove points older than the Decay Time; with a Decay Time of 0, keep only the newest message."""
+        """Remove points older than the Decay Time; if it is 0, remove all but those of the newest message."""
         if self._decay is not None:
             self._decay.cancel()
             self._decay = None
@@ -250,26 +258,26 @@ _IDENTITY = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
 
 
 class PointsDisplay(CloudDisplay):
-    """Shows the points that a subclass extracts from each message."""
+    """The base class of displays whose points a subclass extracts from each message."""
 
     @abstractmethod
     def points_of(self, message: Any) -> Points:
-        """Return the points of a message, in the frame of its header.
+        """Return the points of a message, in the frame of the message's header.
 
         Raises:
             BadCloudError: the message has no usable points.
         """
 
     def lack_of_points(self, message: Any) -> Phrase | None:
-        """Return the reason why a message has no points, if that is unexpected."""
+        """Return a warning that explains why a message has no points, or None if that is normal."""
         return None
 
     def placed(self, points: Points, message: Any, pose: Pose) -> tuple[Points, Pose]:
-        """Return the points of a message and the pose of their frame, corrected if the scanner moved."""
+        """Return the points and the pose of their frame, after a correction for the scanner's motion."""
         return points, pose
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
-        """Show the points of a message."""
+        """Show the points of a message, or the reason why it has none."""
         assert pose is not None
         try:
             points = self.points_of(message)
@@ -283,11 +291,11 @@ class PointsDisplay(CloudDisplay):
 
 
 class LaserScanDisplay(PointsDisplay):
-    """Shows the points of a planar laser scanner.
+    """A display of the points of a planar laser scanner.
 
-    Each ray starts at the pose that the scanner had at the time of the ray, as in laser_geometry. If transforms are not
-    yet
-    available for the end of a scan, the whole scan is placed by the pose at its beginning, whereas RViz would drop it.
+    Each ray starts at the pose that the scanner had at the time of the ray, as in laser_geometry. If no transform is
+    available for the end of a scan, the whole scan is placed at the scanner's pose at the beginning; RViz would drop
+    it.
     """
 
     CLASS = "rviz_default_plugins/LaserScan"
@@ -307,7 +315,10 @@ class LaserScanDisplay(PointsDisplay):
         return self._projector.points(message)
 
     def lack_of_points(self, message: Any) -> Phrase | None:
-        """Return the reason why no ray is valid; by REP 117, infinity means that no object is in range."""
+        """Return a warning if all ranges are invalid, or None.
+
+        By REP 117, an infinite range means that no object is in range, which is not a reason for a warning.
+        """
         ranges = np.frombuffer(message.ranges, np.float32)
         finite = ranges[np.isfinite(ranges)]
         if len(finite):
@@ -324,11 +335,10 @@ class LaserScanDisplay(PointsDisplay):
         return None
 
     def placed(self, points: Points, message: Any, pose: Pose) -> tuple[Points, Pose]:
-        """Return the points and the pose of their frame.
+        """Return the points and the pose of their frame, after a correction for the scanner's motion.
 
         If the scanner moved during the scan, the points are in the Fixed Frame and the pose is the identity. Otherwise
-        the
-        points are in the scanner's own frame.
+        the points are in the scanner's own frame.
         """
         steps = len(message.ranges) - 1
         frame, stamp_ns = self.frame_of(message)
@@ -346,7 +356,7 @@ class LaserScanDisplay(PointsDisplay):
 
 
 class PointCloudDisplay(PointsDisplay):
-    """Shows point clouds in the legacy message type sensor_msgs/msg/PointCloud."""
+    """A display of point clouds in the legacy message type sensor_msgs/msg/PointCloud."""
 
     CLASS = "rviz_default_plugins/PointCloud"
     MESSAGE = "sensor_msgs/msg/PointCloud"
@@ -362,7 +372,7 @@ class PointCloudDisplay(PointsDisplay):
 
 
 class PointCloud2Display(PointsDisplay):
-    """Shows point clouds of type sensor_msgs/msg/PointCloud2."""
+    """A display of point clouds of type sensor_msgs/msg/PointCloud2."""
 
     CLASS = "rviz_default_plugins/PointCloud2"
     MESSAGE = "sensor_msgs/msg/PointCloud2"
@@ -377,25 +387,25 @@ class PointCloud2Display(PointsDisplay):
         return points_of_cloud(message)
 
     def lack_of_points(self, message: Any) -> Phrase | None:
-        """Return the status text for a message that has no point with finite coordinates."""
+        """Return a warning if the message has points but none has finite coordinates, or None."""
         count = message.width * message.height
         return phrase("All {count} points are NaN or infinite", count=count) if count else None
 
 
 class ScalarDisplay(PointsDisplay):
-    """Shows a measured value as a coloured point at the origin of the sensor's frame."""
+    """The base class of displays of one measured value, as a coloured point at the sensor's origin."""
 
     FIELD: ClassVar[str]
     """The field of the message with the number, and the channel of the point."""
 
     def points_of(self, message: Any) -> Points:
-        """Return the single point, coloured by the measured value."""
+        """Return a single point at the origin, with the measured value as its channel."""
         value = np.array([getattr(message, self.FIELD)], np.float64)
         return Points(np.zeros((1, 3), np.float32), {self.FIELD: value})
 
 
 class FluidPressureDisplay(ScalarDisplay):
-    """Shows the pressure of air or water, in pascals."""
+    """A display of the pressure of air or water, in pascals."""
 
     CLASS = "rviz_default_plugins/FluidPressure"
     MESSAGE = "sensor_msgs/msg/FluidPressure"
@@ -407,7 +417,7 @@ class FluidPressureDisplay(ScalarDisplay):
 
 
 class IlluminanceDisplay(ScalarDisplay):
-    """Shows the illuminance, in lux."""
+    """A display of the illuminance, in lux."""
 
     CLASS = "rviz_default_plugins/Illuminance"
     MESSAGE = "sensor_msgs/msg/Illuminance"
@@ -419,7 +429,7 @@ class IlluminanceDisplay(ScalarDisplay):
 
 
 class RelativeHumidityDisplay(ScalarDisplay):
-    """Shows the relative humidity of the air, 0 to 1."""
+    """A display of the relative humidity of the air, 0 to 1."""
 
     CLASS = "rviz_default_plugins/RelativeHumidity"
     MESSAGE = "sensor_msgs/msg/RelativeHumidity"
@@ -431,7 +441,7 @@ class RelativeHumidityDisplay(ScalarDisplay):
 
 
 class TemperatureDisplay(ScalarDisplay):
-    """Shows the temperature, in degrees Celsius; cold is violet and hot is red."""
+    """A display of the temperature, in degrees Celsius; cold is violet and hot is red."""
 
     CLASS = "rviz_default_plugins/Temperature"
     MESSAGE = "sensor_msgs/msg/Temperature"

@@ -1,4 +1,4 @@
-"""The displays Pose, PoseArray, PoseWithCovariance, Odometry and Path, which draw arrows, axes and lines."""
+"""The displays Pose, PoseArray, PoseWithCovariance, ParticleCloud, Odometry and Path."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ _AXES = (("Shape",), "Axes")
 
 
 def pose_shape(*, nested: bool = False) -> Schema:
-    """Return the properties that select how a pose is drawn.
+    """Return the declarations of the properties that select how a pose is drawn.
 
-    With ``nested``, the sizes are below ``Shape``, as in Odometry.
+    With `nested`, the sizes are below ``Shape``, as in Odometry.
     """
     description = "Whether a pose is drawn as an arrow along its x or as axes."
     sizes = (
@@ -52,7 +52,7 @@ def pose_shape(*, nested: bool = False) -> Schema:
 
 
 def covariance() -> PropertySpec:
-    """Return the property group of RViz's CovarianceProperty."""
+    """Return the declaration of the property group of RViz's CovarianceProperty."""
     position = (
         PropertySpec("Color", "color", "#cc33cc", "Colour of the ellipsoid."),
         alpha("Opacity of the ellipsoid.", 0.3),
@@ -120,7 +120,7 @@ def pose_rows(poses: Iterable[Any]) -> Floats:
 
 
 class PoseDisplay(RecentDisplay):
-    """Shows the last pose of a topic."""
+    """A display of the last pose of a topic."""
 
     CLASS = "rviz_default_plugins/Pose"
     MESSAGE = "geometry_msgs/msg/PoseStamped"
@@ -128,20 +128,20 @@ class PoseDisplay(RecentDisplay):
     SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *pose_shape())
 
     def content(self, message: Any) -> DataContent | None:
-        """Return the pose of a message."""
+        """Return the pose of a message, or None if it is not valid."""
         row = pose_row(message.pose)
         return PoseMarks(np.array([row], dtype=np.float32), NO_COVARIANCE) if self.is_finite(row) else None
 
 
 class PoseWithCovarianceDisplay(RecentDisplay):
-    """Shows the last pose of a topic with its uncertainty."""
+    """A display of the last pose of a topic, with its uncertainty."""
 
     CLASS = "rviz_default_plugins/PoseWithCovariance"
     MESSAGE = "geometry_msgs/msg/PoseWithCovarianceStamped"
     SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *pose_shape(), covariance())
 
     def content(self, message: Any) -> DataContent | None:
-        """Return the pose and covariance of a message."""
+        """Return the pose and covariance of a message, or None if they are not valid."""
         row = pose_row(message.pose.pose)
         spread = np.asarray(message.pose.covariance, dtype=np.float64)
         if not self.is_finite(row, spread):
@@ -163,7 +163,7 @@ _LOOK_OF_POSES = (
 
 
 class PoseArrayDisplay(RecentDisplay):
-    """Shows the poses in the last message of a topic."""
+    """A display of the poses in the last message of a topic."""
 
     CLASS = "rviz_default_plugins/PoseArray"
     MESSAGE = "geometry_msgs/msg/PoseArray"
@@ -180,13 +180,13 @@ class PoseArrayDisplay(RecentDisplay):
     )
 
     def content(self, message: Any) -> DataContent | None:
-        """Return the poses of a message."""
+        """Return the poses of a message, or None if they are not valid."""
         rows = pose_rows(message.poses)
         return PoseMarks(rows, NO_COVARIANCE) if self.is_finite(rows) else None
 
 
 class ParticleCloudDisplay(RecentDisplay):
-    """Shows the particles of Nav2's AMCL, more likely ones larger, as nav2_rviz_plugins does."""
+    """A display of the particles of Nav2's AMCL, in which more likely particles are larger."""
 
     CLASS = "nav2_rviz_plugins/ParticleCloud"
     MESSAGE = "nav2_msgs/msg/ParticleCloud"
@@ -201,7 +201,7 @@ class ParticleCloudDisplay(RecentDisplay):
     )
 
     def content(self, message: Any) -> DataContent | None:
-        """Return the particles' poses and weights."""
+        """Return the poses and weights of the particles, or None if they are not valid."""
         rows = pose_rows(particle.pose for particle in message.particles)
         weights = np.array([particle.weight for particle in message.particles], dtype=np.float32)
         return ParticleMarks(rows, weights) if self.is_finite(rows, weights) else None
@@ -211,7 +211,7 @@ _NORM_TOLERANCE = 10e-3
 
 
 class OdometryDisplay(RecentDisplay):
-    """Shows the path of a robot, with a mark after each given distance or rotation."""
+    """A display of the path of a robot, with a mark after each given distance or rotation."""
 
     CLASS = "rviz_default_plugins/Odometry"
     MESSAGE = "nav_msgs/msg/Odometry"
@@ -242,7 +242,7 @@ class OdometryDisplay(RecentDisplay):
         self._marked: tuple[float, ...] | None = None
 
     def content(self, message: Any) -> DataContent | None:
-        """Return the pose with its covariance, or None if it is invalid or too close to the last mark."""
+        """Return the pose with its covariance, or None if it is not valid or too close to the last mark."""
         row = pose_row(message.pose.pose)
         spread = np.asarray(message.pose.covariance, dtype=np.float64)
         if not self.is_finite(row, spread):
@@ -256,7 +256,7 @@ class OdometryDisplay(RecentDisplay):
         return PoseMarks(np.array([row], dtype=np.float32), spread.astype(np.float32))
 
     def reset(self) -> None:
-        """Discard the marks; the next message adds a mark in any case."""
+        """Discard the marks, so that the next valid message adds one regardless of its distance."""
         self._marked = None
         super().reset()
 
@@ -275,7 +275,7 @@ _ARROWS_SHOWN = (("Pose Style",), "Arrows")
 
 
 class PathDisplay(RecentDisplay):
-    """Shows the last paths of a topic as lines, optionally with the poses on them."""
+    """A display of the last paths of a topic as lines, optionally with the poses on them."""
 
     CLASS = "rviz_default_plugins/Path"
     MESSAGE = "nav_msgs/msg/Path"
@@ -300,6 +300,6 @@ class PathDisplay(RecentDisplay):
     )
 
     def content(self, message: Any) -> DataContent | None:
-        """Return the poses of a path."""
+        """Return the poses of a path, or None if they are not valid."""
         rows = pose_rows(stamped.pose for stamped in message.poses)
         return PoseMarks(rows, NO_COVARIANCE) if self.is_finite(rows) else None

@@ -52,9 +52,9 @@ NO_ROWS = (PropertySpec(LINKS, "group", children=_OPTIONS),)
 class RobotRows:
     """The property rows of a robot's links and joints.
 
-    The page arranges the rows by the Link Tree Style; their positions in the file do not depend on it. A link has a
-    check box if it has shapes. A joint has a check box if links with shapes are below it: in a tree all descendants
-    count, in a list only the joint's child link.
+    The page arranges the rows by the Link Tree Style; their positions in the file do not depend on the style. A link
+    has a check box if it has shapes. A joint has a check box if links with shapes are below it: in a tree, all
+    descendants count; in a list, only the joint's child link.
     """
 
     def __init__(self, robot: Robot) -> None:
@@ -82,13 +82,17 @@ class RobotRows:
         return [(LINKS, name) for name in sorted(self._shaped - _OPTION_NAMES)]
 
     def boxes_of(self, joint: str, style: str) -> list[Path]:
-        """Return the check boxes of the links that a joint's check box controls."""
+        """Return the paths of the links' check boxes that a joint's check box controls."""
         return [(LINKS, name) for name in self._links_of(self._robot.joints[joint], style)]
 
     def derived(self, style: str, is_on: Callable[[Path], bool]) -> dict[Path, bool]:
-        """Return the states of the check boxes that depend on the links' check boxes.
+        """Return the states of the joints' check boxes and of *All Links Enabled*, by property path.
 
-        A joint's check box is on if the check boxes of all its links are on.
+        Such a check box is on if the check boxes of all its links are on.
+
+        Args:
+            style: the Link Tree Style.
+            is_on: returns whether the check box of a link is on.
         """
         on = {name: is_on((LINKS, name)) for name in self._shaped - _OPTION_NAMES}
         found: dict[Path, bool] = {
@@ -157,11 +161,10 @@ _MANY_BOXES = 20
 
 
 class RobotModelDisplay(ViewerDisplay):
-    """Shows a robot, from a description on a topic or in a file.
+    """A display of a robot, from a description on a topic or in a file.
 
-    If a new description cannot be read, the last valid robot is kept, whereas RViz would show none. Frames of links
-    that
-    a new description lacks are removed from tf; RViz would show them until it is closed.
+    If a new description cannot be read, the last valid robot stays visible, whereas RViz would show none. When a new
+    description lacks links, their frames are removed from tf; RViz would show the frames until it is closed.
     """
 
     CLASS = "rviz_default_plugins/RobotModel"
@@ -199,11 +202,11 @@ class RobotModelDisplay(ViewerDisplay):
         return self._file_problems
 
     def schema(self) -> Schema:
-        """Return the fixed properties, and the rows of each link and joint."""
+        """Return the fixed properties, and the rows of all links and joints."""
         return (*_STATIC, *self._robot_specs)
 
     def start(self) -> None:
-        """Start to follow the source of the description."""
+        """Subscribe to the description's topic, or read its file."""
         problem = self._source.follow()
         by_topic = self.properties.text("Description Source") == "Topic"
         name = "Topic" if by_topic else "Description File"
@@ -216,12 +219,12 @@ class RobotModelDisplay(ViewerDisplay):
         self._show_status()
 
     def stop(self) -> None:
-        """Stop following the source, and withdraw the robot's files from pages."""
+        """Unsubscribe, and withdraw the pages' access to the robot's files."""
         self._source.close()
         self.context.meshes.replace(self.id, {})
 
     def changed(self, path: Path) -> None:
-        """Follow another source or prefix, or apply the check box that enables or disables all links."""
+        """Apply a new source, a new frame prefix, or the check boxes of links and joints."""
         if path[0] in _SOURCE_NAMES:
             self.start()
         elif path == ("TF Prefix",) and self.robot is not None:
@@ -230,7 +233,7 @@ class RobotModelDisplay(ViewerDisplay):
             self._box_changed(self._rows, path)
 
     def frames_changed(self) -> None:
-        """Show in the status which links have a known pose."""
+        """Show in the status which links have no known pose."""
         self._show_status()
 
     def time_changed(self) -> None:
@@ -239,11 +242,11 @@ class RobotModelDisplay(ViewerDisplay):
             self._described(self._held)
 
     def messages(self) -> list[ServerMessage]:
-        """Return the messages that describe the robot to a newly opened page."""
+        """Return the robot's links and joints for a newly opened page."""
         return [self.scene]
 
     def receive(self, status: MeshStatus) -> None:
-        """Show a page's report on a mesh of this robot; reports on earlier robots are ignored."""
+        """Show in the status whether a page could load a mesh of the current robot."""
         link = next((link for link in self.scene.links if link.name == status.link), None)
         if link is None or not any(shape.url == status.url for shape in (*link.visuals, *link.collisions)):
             return
@@ -352,7 +355,7 @@ class RobotModelDisplay(ViewerDisplay):
         self._show_status()
 
     def recalled(self) -> None:
-        """Restore the order of the rows, and update the joints' check boxes."""
+        """Update the rows for a restored Link Tree Style, and the joints' check boxes."""
         if self._rows is not None:
             self._robot_specs = self._rows.specs(self.properties.text(*STYLE))
             self._derive_boxes(self._rows)

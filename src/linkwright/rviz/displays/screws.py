@@ -25,26 +25,26 @@ def _screw_specs(linear: str, angular: str) -> Schema:
 
 
 class ScrewDisplay(RecentDisplay):
-    """Shows the last messages with a linear and an angular vector, as arrows at the origin of their frame."""
+    """The base class of displays of a linear and an angular vector, as arrows at the frame's origin."""
 
     LENGTH = ("History Length",)
 
     def content(self, message: Any) -> DataContent | None:
-        """Return the linear and the angular vector of a message."""
+        """Return the linear and the angular vector of a message, or None if a number is not finite."""
         linear, angular = (self.number_list(vector) for vector in self.vectors(message))
         return Screw(linear, angular) if self.is_finite(linear, angular) else None
 
     @abstractmethod
     def vectors(self, message: Any) -> tuple[Any, Any]:
-        """Return the linear and the angular vector of a message."""
+        """Return the linear and the angular vector of a message, as geometry_msgs/msg/Vector3."""
 
     def number_list(self, vector: Any) -> list[float]:
-        """Return x, y and z of a vector."""
+        """Return x, y and z of a geometry_msgs/msg/Vector3."""
         return [float(vector.x), float(vector.y), float(vector.z)]
 
 
 class TwistDisplay(ScrewDisplay):
-    """Shows linear and angular velocities."""
+    """A display of linear and angular velocities."""
 
     CLASS = "rviz_default_plugins/TwistStamped"
     MESSAGE = "geometry_msgs/msg/TwistStamped"
@@ -60,7 +60,7 @@ class TwistDisplay(ScrewDisplay):
 
 
 class AccelDisplay(ScrewDisplay):
-    """Shows linear and angular accelerations."""
+    """A display of linear and angular accelerations."""
 
     CLASS = "rviz_default_plugins/AccelStamped"
     MESSAGE = "geometry_msgs/msg/AccelStamped"
@@ -72,7 +72,7 @@ class AccelDisplay(ScrewDisplay):
 
 
 class WrenchDisplay(ScrewDisplay):
-    """Shows forces and torques."""
+    """A display of forces and torques."""
 
     CLASS = "rviz_default_plugins/Wrench"
     MESSAGE = "geometry_msgs/msg/WrenchStamped"

@@ -48,7 +48,7 @@ _UNMOVED = 1e-6
 
 
 class WorldDisplay(TopicDisplay):
-    """Shows all models of a world with their visuals, each link at its pose in the simulation.
+    """A display of all models of a world with their visuals, each link at its pose in the simulation.
 
     The poses are in the frame ``world``. If neither tf nor the Fixed Frame has that name, the world is placed so that
     one of its links, usually a robot's, is at tf's pose for the frame of the same name. If the Fixed Frame has that
@@ -134,7 +134,7 @@ class WorldDisplay(TopicDisplay):
         self.context.meshes.replace(self.id, {})
 
     def changed(self, path: Path) -> None:
-        """Subscribe to other topics."""
+        """Subscribe to other topics, or to the rays of other lidars."""
         super().changed(path)
         if path == (_POSES,):
             self._follow()
@@ -142,23 +142,26 @@ class WorldDisplay(TopicDisplay):
             self._follow_rays()
 
     def enabled_changed(self) -> None:
-        """Subscribe only while the display is enabled."""
+        """Subscribe if the display is enabled, or unsubscribe."""
         super().enabled_changed()
         self._follow()
         self._follow_rays()
 
     def time_changed(self) -> None:
-        """Process the messages that were received while time was paused."""
+        """Process the messages that were queued while time was paused."""
         super().time_changed()
         self._side.resume()
         self._rays.resume()
 
     def time_reset(self) -> None:
-        """Keep the world, which is not published again, and hide the lidar rays until new measurements arrive."""
+        """Hide the lidar rays until new measurements arrive.
+
+        The world stays visible, because its description is not published again.
+        """
         self._rays.forget()
 
     def reset(self) -> None:
-        """Hide the world until another description arrives."""
+        """Discard the world; nothing is shown until another description arrives."""
         self._cancel()
         self._content, self._rows_of, self._sent = WorldContent(), {}, ()
         self._page_problems.clear()
@@ -167,18 +170,18 @@ class WorldDisplay(TopicDisplay):
         self.forget()
 
     def frames_changed(self) -> None:
-        """Recompute the pose of the world."""
+        """Compute the pose of the world again, and send the poses."""
         self._show_poses()
 
     def transforms_received(self) -> None:
-        """Place the world once the frames of its robots are known; afterwards the published poses apply."""
+        """Place the world if it could not be placed before; later, each pose message updates its pose."""
         own = self.context.transforms.own(WORLD)
         placed = self._placed[1] is not None if not self._leads else own is not None and own.parent is not None
         if self._content.links and not placed and (self._leads or self._placed[0] != WORLD):
             self._show_poses()
 
     def receive(self, status: MeshStatus) -> None:
-        """Show a page's report on a mesh of the world in the status."""
+        """Show in the status whether a page could load a mesh of the world."""
         row = self._rows_of.get(status.link)
         if row is None:
             return
@@ -240,7 +243,7 @@ class WorldDisplay(TopicDisplay):
         poses = np.array(content.poses, dtype=np.float64).reshape(-1, 7)
         moving = frozenset(self._posed)
         static = tuple(f"{model.name}{SEPARATOR}" for model in world.models if model.static)
-        for row, link in enumerate(content.links):  # moving links keep their poses for now
+        for row, link in enumerate(content.links):  # preserve moving links' poses until new ones arrive
             if link.name in moving and link.name in before and not link.name.startswith(static):
                 poses[row] = self._poses[before[link.name]]
         self._revision += 1
@@ -291,7 +294,7 @@ class WorldDisplay(TopicDisplay):
             return
         self.delete_status_row(_POSES)
         self._posed = batch.children
-        # Transforms for the current poses may not have arrived yet, but those for the previous poses have.
+        # Locate with the previous poses: the transforms for the new poses may not have arrived yet.
         self._locate()
         known = [place for place, row in enumerate(rows) if row >= 0]
         self._poses[[rows[place] for place in known]] = poses[known]
@@ -317,7 +320,7 @@ class WorldDisplay(TopicDisplay):
         self.send(rays, key=_rays_key(rays.lidar))
 
     def _locate(self) -> None:
-        """Compute the pose of the world in the Fixed Frame from the latest poses."""
+        """Compute the pose of the world in the Fixed Frame from the last poses of its links."""
         if not self._content.links:
             return
         frames = self.context.transforms.names()
@@ -376,12 +379,11 @@ class WorldDisplay(TopicDisplay):
         )
 
     def _anchor(self, frames: frozenset[str]) -> tuple[int, str, Transform] | None:
-        """Find a link that is also a tf frame.
+        """Return a link that is also a tf frame with a known pose, or None if there is no such link.
 
         Returns:
             The link's row, the frame, and the frame's pose. The pose is in the Fixed Frame, or in tf's root frame if
-            the world
-            determines where tf's frames are. None if there is no such link with a known pose.
+            the world determines where tf's frames are.
         """
         for row in self._anchors:
             frame = _unscoped(self._content.links[row].name)
@@ -428,7 +430,7 @@ def _scene(
 
 
 def _content(text: str, index: MeshIndex) -> tuple[World, WorldContent]:
-    """Return the world described by the text, and the content that draws it.
+    """Return the world that a text describes, and the content that draws the world.
 
     Raises:
         LinkwrightError: the text is not SDF, or contains neither a world nor a model.
@@ -452,6 +454,6 @@ def _unscoped(name: str) -> str:
 
 
 def _anchors(content: WorldContent) -> tuple[int, ...]:
-    """Return the rows of the links that can place the world, because their frame name is unique, in file order."""
+    """Return the rows of the links whose frame name is unique, in file order; only they can be anchors."""
     counts = Counter(_unscoped(link.name) for link in content.links)
     return tuple(row for row, link in enumerate(content.links) if counts[_unscoped(link.name)] == 1)

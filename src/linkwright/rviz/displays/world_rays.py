@@ -1,4 +1,4 @@
-"""Subscribes to the measured rays of the lidars of a simulated world while they are drawn."""
+"""Receives the measured rays of the lidars of a simulated world."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _MOST_KEPT = 64
 
 
 class LidarRays:
-    """Receives the measured rays of lidars, subscribing only while they are drawn.
+    """Receives the measured rays of lidars, and subscribes only while the rays are drawn.
 
     Args:
         host: the display's host.
@@ -40,7 +40,7 @@ class LidarRays:
         self._host = host
 
     def describe(self, lidars: Iterable[ShownLidar]) -> None:
-        """Set the lidars of a world."""
+        """Set the lidars of a world, and show their last measurements, if there are any."""
         self._lidars = {lidar.scene.name: lidar for lidar in lidars}
         self._let_go(set())
         self._last = {name: message for name, message in self._last.items() if name in self._lidars}
@@ -48,7 +48,7 @@ class LidarRays:
             self._measured(message)
 
     def forget(self) -> None:
-        """Discard the rays, so that none are drawn until new measurements arrive."""
+        """Discard and hide all rays; nothing is drawn until new measurements arrive."""
         self._last.clear()
         self._let_go(set())
 
@@ -60,7 +60,7 @@ class LidarRays:
             choice: the lidars to draw, see `CHOICES`.
 
         Returns:
-            RViz's text for a problem with the topic, or None.
+            RViz's error text if a subscription failed, or None.
         """
         lidars: dict[str, list[str]] = {}
         for name, lidar in self._lidars.items():
@@ -76,7 +76,7 @@ class LidarRays:
         return problem
 
     def resume(self) -> None:
-        """Process the messages that were received while time was paused."""
+        """Process the messages that were queued while time was paused."""
         for topic in self._topics.values():
             topic.resume()
 
@@ -95,7 +95,7 @@ class LidarRays:
         ranges = np.asarray(message.ranges, dtype=np.float32)
         if lidar is not None and ranges.size != lidar.measured[0] * lidar.measured[1]:
             return
-        if name in self._last or len(self._last) < _MOST_KEPT:  # its world may follow, as in recordings
+        if name in self._last or len(self._last) < _MOST_KEPT:  # in recordings, the world may follow its rays
             self._last[name] = message
         if lidar is None:
             return

@@ -22,7 +22,7 @@ _IDENTITY = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
 
 @dataclass(frozen=True)
 class OwnFrame:
-    """A frame that tf does not know, and that a display places.
+    """A frame that a display places and that tf does not know.
 
     Attributes:
         name: the name of the frame.
@@ -36,9 +36,7 @@ class OwnFrame:
 
 
 class FrameHistory:
-    """A tf2 buffer that subscribes only while a display uses it.
-
-    Showing only robots needs no history.
+    """A tf2 buffer that subscribes only while it is used; robots alone are shown without it.
 
     Displays may place frames that tf does not know, which can then be the Fixed Frame. Only this viewer sees these
     frames.
@@ -47,7 +45,7 @@ class FrameHistory:
         node: the node that subscribes.
 
     Attributes:
-        on_own: called when a frame that tf does not know moves.
+        on_own: callbacks for a frame that a display has placed, moved or withdrawn.
     """
 
     def __init__(self, node: Node) -> None:
@@ -64,7 +62,10 @@ class FrameHistory:
         return BufferCore(logger=self._node.get_logger())
 
     def use(self, listener: Callable[[], None]) -> Callable[[], None]:
-        """Subscribe, and call the listener whenever transforms arrive; return a function that ends the subscription."""
+        """Subscribe, and call the listener whenever transforms arrive.
+
+        Return a function that removes the listener, and unsubscribes if there is no other listener.
+        """
         self._listeners.append(listener)
         if not self._subscriptions:
             for topic, static, qos in (("/tf", False, TF_QOS), ("/tf_static", True, STATIC_TF_SUBSCRIPTION_QOS)):
@@ -89,7 +90,7 @@ class FrameHistory:
             stamp_ns: the time, nanoseconds; 0 for the latest.
 
         Raises:
-            TransformException: the pose is not known; the text is tf2's.
+            TransformException: the pose is not known; the message is tf2's.
         """
         if frame == fixed_frame:
             return _IDENTITY
@@ -100,16 +101,19 @@ class FrameHistory:
         return np.array(found)
 
     def names(self) -> frozenset[str]:
-        """Return the frames that transforms have named."""
+        """Return the names of all frames in the transforms received so far."""
         return frozenset(self._buffer.frame_names())
 
     def own(self, name: str) -> OwnFrame | None:
-        """Return a frame placed by a display; None if no display places it, or tf knows it."""
+        """Return the frame that a display has placed under a name, or None if there is none or tf knows it."""
         found = next((own for own in self._own.values() if own.name == name), None)
         return None if found is None or name in self._buffer.frame_names() else found
 
     def known(self, frame: str, pose: ArrayLike) -> tuple[str, NDArray[np.float64]]:
-        """Convert a pose in a frame of a display to a frame of tf, so that other programs know its frame.
+        """Return a frame and a pose that other programs understand, for a pose in any frame.
+
+        If a display has placed the frame, the pose is converted to a frame of tf. Otherwise both are returned
+        unchanged.
 
         Args:
             frame: the frame that the pose is in.
@@ -121,11 +125,11 @@ class FrameHistory:
         return own.parent, compose(invert(own.pose), pose)
 
     def place(self, display: str, own: OwnFrame | None) -> None:
-        """Place a frame for a display, or withdraw it.
+        """Place the frame of a display, or withdraw it.
 
         Args:
             display: the display's ID.
-            own: the frame and its pose; None to withdraw it.
+            own: the frame and its pose; None to withdraw the display's frame.
         """
         if own is None:
             if self._own.pop(display, None) is None:
@@ -136,7 +140,7 @@ class FrameHistory:
             listener()
 
     def forget(self) -> None:
-        """Discard all moving transforms because time was reset."""
+        """Discard all transforms except static ones, because time was reset."""
         self._buffer.clear()
 
     def _add_transforms(self, message: TFMessage, *, static: bool) -> None:

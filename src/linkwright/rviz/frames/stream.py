@@ -1,8 +1,8 @@
-"""Sends transforms from the graph to pages, at most at the Frame Rate.
+"""Sends the poses of frames to pages, at most at the Frame Rate.
 
-Only changes are sent; after a pause they are sent immediately.
+Only changes are sent. A change after a quiet period is sent immediately.
 
-`TimeControl` provides the time at which frames are shown, and `FrameView` the information for displays.
+`TimeControl` determines the time at which frames are shown, and `FrameView` informs displays about the frames.
 """
 
 from __future__ import annotations
@@ -82,7 +82,7 @@ class FrameView:
 
 
 def transform_status(frames: FrameView, frame: str) -> StatusRow:
-    """Return the Transform status row of a display, in RViz's words.
+    """Return the status row ``Transform`` of a display, with RViz's text.
 
     The frame may be ``<Fixed Frame>``.
     """
@@ -98,13 +98,13 @@ def transform_status(frames: FrameView, frame: str) -> StatusRow:
 class TimeControl:
     """RViz's Time panel: Pause, and Synchronization with its Source.
 
-    While paused, displays process no messages and frames do not move. Exact shows the frames at the time of the
+    While time is paused, displays process no messages and frames do not move. Exact shows the frames at the time of the
     source's last message; Approximate uses the current time minus the source's delay.
 
     Args:
         clock: the viewer's clock.
         changed: called when one of the attributes has changed.
-        signalled: called when the source has processed a message, after which frames must be updated.
+        signalled: called when the source has received a message, after which frames must be updated.
 
     Attributes:
         paused: whether time is paused.
@@ -137,7 +137,7 @@ class TimeControl:
         self._changed()
 
     def took(self, display: str, stamp_ns: int) -> None:
-        """Note the time, in nanoseconds, of a message that a display shows."""
+        """Record the stamp, in nanoseconds, of a message that a display has received."""
         if display not in self.sources:
             self.sources.append(display)
             self._changed()
@@ -167,7 +167,7 @@ class TimeControl:
         return self._clock.now_ns() - (self._current_delay_ns if self.mode == "Approximate" else 0)
 
     def reset(self) -> None:
-        """Discard the recorded message times."""
+        """Discard the recorded stamps, because time was reset."""
         self.sources.clear()
         self._exact_ns = self._delay_ns = self._current_delay_ns = 0
         self._paused_ns = self._clock.now_ns()
@@ -178,7 +178,7 @@ class FrameAudience(Protocol):
     """The pages that receive frames."""
 
     def __len__(self) -> int:
-        """Return the number of pages; nothing is computed if it is 0."""
+        """Return the number of pages; if it is 0, frames are not updated regularly."""
 
     def publish(self, message: FrameTable, /) -> None:
         """Send a new frame table, before transforms that need it."""
@@ -188,25 +188,25 @@ class FrameAudience(Protocol):
 
 
 class FrameStream:
-    """Maintains the tf buffer of the viewer and sends its changes.
+    """Maintains the viewer's tf buffer, and sends the changes of frame poses to pages.
 
-    A frame that tf does not know may be the Fixed Frame if a display places it (`FrameHistory.place`).
+    A frame that tf does not know can be the Fixed Frame if a display places it (`FrameHistory.place`).
 
-    A robot with a single link has no transforms, so tf does not know its frame. If that is the Fixed Frame, it is still
-    sent, as the identity: RViz places a frame in itself without querying tf.
+    A robot with a single link has no transforms, so tf does not know its frame. If that frame is the Fixed Frame, it is
+    still sent, as the identity: RViz places a frame in itself without querying tf.
 
     Args:
         node: the node that subscribes.
         pages: the pages that receive the transforms.
         time: whether time is paused, and the time at which frames are shown.
         history: the history of transforms, for a time other than the latest.
-        on_frames: called when frames appear or disappear, or when it changes whether their poses are known.
+        on_frames: called with a new `FrameView` when the frames have changed, or which of them have a known pose.
         own_frames: returns the frames of robots' links, which tf may not know.
 
     Attributes:
         fixed_frame: the Fixed Frame.
         rate: the maximum update rate, Hz.
-        fade_time: the shortest Frame Timeout of the displays, seconds; None when no display shows ages.
+        fade_time: the shortest Frame Timeout of the displays, seconds; None when no display shows the ages of frames.
     """
 
     def __init__(
@@ -257,7 +257,7 @@ class FrameStream:
         self._age()
 
     def close(self) -> None:
-        """Stop sending."""
+        """Stop sending, and cancel scheduled updates."""
         if self._wake in self._history.on_own:
             self._history.on_own.remove(self._wake)
         for handle in (self._later, self._ageing):
@@ -270,7 +270,7 @@ class FrameStream:
             self._release = None
 
     def time_changed(self) -> None:
-        """Update the frames after time was paused, resumed, or set to another source."""
+        """Update the frames after time was paused or resumed, or its synchronization was changed."""
         if self._time.paused:
             self._paused_ns = self._paused_ns or self._clock.now_ns()
         else:
@@ -282,7 +282,7 @@ class FrameStream:
         self.refresh()
 
     def forget(self) -> None:
-        """Discard all moving transforms because time was reset."""
+        """Discard all transforms except static ones, because time was reset."""
         self._held.clear()
         self._buffer.clear()
         self.refresh()
@@ -292,21 +292,24 @@ class FrameStream:
         self._wake()
 
     def robot_changed(self, gone: set[str]) -> None:
-        """Remove the frames that a new robot lacks, and check whether the robot has a frame that tf does not know."""
+        """Remove the frames that only the former robot had, and schedule an update."""
         known = gone.intersection(self._buffer.frames())
         if known:
             self._buffer.remove(known)
         self._wake()
 
     def refresh(self) -> None:
-        """Update now, even without pages, because the Fixed Frame or the robot has changed, or a page opens."""
+        """Update now, even if there are no pages.
+
+        This is necessary when the Fixed Frame or the robot has changed, or when a page opens.
+        """
         if self._later is not None:
             self._later.cancel()
         self._look()
 
     @property
     def opening(self) -> tuple[FrameTable, bytes]:
-        """The frame table and the last binary frame for a page that opens; empty before the first update."""
+        """The frame table and the last binary frame for a page that opens; both are empty at first."""
         return self._table, self._frame
 
     def _add_transforms(self, message: TFMessage, *, static: bool) -> None:
@@ -358,7 +361,7 @@ class FrameStream:
 
     def _snapshot(self, fixed_frame: str, now_ns: int) -> FrameSnapshot:
         """Return the poses of all frames in the Fixed Frame, which may be a frame placed by a display."""
-        # The buffer may know the frame before the history does.
+        # The history may be behind this buffer.
         own = None if self._buffer.knows(fixed_frame) else self._history.own(fixed_frame)
         if own is None or own.parent is None:
             return self._buffer.snapshot(fixed_frame, now_ns)
@@ -366,12 +369,15 @@ class FrameStream:
         return replace(snapshot, poses=compose(own.pose, snapshot.poses))
 
     def _stands_alone(self, frame: str) -> bool:
-        """Return whether a frame of a robot or display is unknown to tf and unconnected to its frames."""
+        """Return whether a robot or display has the frame, and no tf frame is connected to it."""
         own = self._history.own(frame)
         return frame in self._own_frames() or (own is not None and own.parent is None)
 
     def _poses_then(self, snapshot: FrameSnapshot, fixed_frame: str) -> NDArray[np.float64]:
-        """Return the poses of frames at the time to be shown, or the current poses if that time is unknown."""
+        """Return the poses of frames at the time to be shown.
+
+        A frame whose pose at that time is unknown has its latest pose.
+        """
         stamp_ns = self._time.lookup_ns()
         self._follow(needed=stamp_ns is not None)
         if stamp_ns is None:
@@ -383,7 +389,7 @@ class FrameStream:
         return poses
 
     def _follow(self, *, needed: bool) -> None:
-        """Subscribe to the history while a time other than the latest is shown."""
+        """Use the history while a time other than the latest is shown, and release it otherwise."""
         if needed and self._release is None:
             self._release = self._history.use(lambda: None)
         elif not needed and self._release is not None:
@@ -421,10 +427,10 @@ class FrameStream:
         self._pages.send_transforms(self._frame)
 
     def _next_due(self) -> float:
-        """Return the earliest time of the next update.
+        """Return the earliest time of the next update, on the event loop's clock.
 
-        A slightly late update does not delay the next one. Otherwise, transforms that arrive at this rate would wait
-        longer and longer, until one of them is skipped.
+        A slightly late update does not delay the next one. Otherwise, transforms that arrive at exactly this rate would
+        wait longer and longer, until one of them is skipped.
         """
         period = _HURRY / self.rate
         in_time = self._looked_at - self._due < period / 2

@@ -1,7 +1,7 @@
-"""Interactive markers: the client of a marker server, and conversion to drawable shapes.
+"""Interactive markers: the client of a marker server, and the conversion to drawable shapes.
 
-The client receives all markers first, then changes, and all markers again after a lost change. Controls without markers
-get the same arrows, rings and buttons as in the ``interactive_markers`` package.
+The client receives all markers first, and then changes. After a lost change, it receives all markers again. Controls
+without markers get the same arrows, rings and buttons as in the ``interactive_markers`` package.
 """
 
 from __future__ import annotations
@@ -47,10 +47,10 @@ class ClientEvents:
     """Callbacks for the events of a connection to a server.
 
     Attributes:
-        everything: receives all markers of the server, at the beginning and after a lost update.
-        update: receives a visualization_msgs/msg/InteractiveMarkerUpdate.
-        gone: called when the server has no markers any more or has disappeared.
-        status: receives the state of the connection, for the display's status.
+        everything: called with all markers of the server, at the beginning and after a lost update.
+        update: called with a visualization_msgs/msg/InteractiveMarkerUpdate.
+        gone: called when all markers are to be removed, for example because the server has disappeared.
+        status: called with the state of the connection, for the display's status.
     """
 
     everything: Callable[[list[Any]], None]
@@ -60,10 +60,12 @@ class ClientEvents:
 
 
 class InteractiveMarkerClient:
-    """Connects to one server: it waits until the server appears, and reconnects when it returns.
+    """Connects to an interactive marker server.
+
+    The client waits until the server is available, and connects again when the server returns.
 
     Args:
-        node: to subscribe with.
+        node: the node that subscribes.
         namespace: the server's namespace.
         events: the callbacks.
 
@@ -129,7 +131,7 @@ class InteractiveMarkerClient:
 
     def _answered(self, request: Any, response: Any) -> None:
         if request is not self._request or response is None:
-            return  # from a server that has disappeared since
+            return  # the server has disappeared since the request
         self._request = None
         self._sequence = response.sequence_number
         self._events.everything(list(response.markers))
@@ -143,7 +145,7 @@ class InteractiveMarkerClient:
             self._early = [*self._early, update][-_UPDATE_DEPTH:]
             return
         if update.seq_num <= self._sequence and update.type == _UPDATE:
-            return  # the first response already includes it
+            return  # the response with all markers includes this update
         expected = self._sequence + (1 if update.type == _UPDATE else 0)
         if update.seq_num != expected:
             self._reset()
@@ -182,12 +184,12 @@ FramePlacer = Callable[[str, str], Transform]
 def read_interactive_marker(
     message: Any, index: MeshIndex, frames: FramePlacer, *, transparent: bool
 ) -> InteractiveMarkerShape:
-    """Return the shape and the controls of an interactive marker.
+    """Return the drawable form of an interactive marker: its shapes and controls.
 
     Args:
         message: a visualization_msgs/msg/InteractiveMarker.
         index: finds the files that the marker refers to.
-        frames: returns poses for markers that specify their own frame.
+        frames: returns the pose of one frame in another, for markers that specify their own frame.
         transparent: whether default arrows and rings are transparent.
 
     Raises:
@@ -265,7 +267,7 @@ def _marker(marker: Any, message: Any, index: MeshIndex, frames: FramePlacer) ->
     frame = marker.header.frame_id.removeprefix("/")
     reference = message.header.frame_id.removeprefix("/")
     if frame:
-        # The marker has its own pose, but here it is attached to the control.
+        # The marker specifies its own frame, but the page attaches it to the control.
         in_reference = compose(frames(reference, frame), _as_pose(shape.pose))
         shape.pose = list(compose(invert(_as_pose(pose_of(message.pose))), in_reference))
     return shape

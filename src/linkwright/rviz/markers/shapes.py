@@ -1,6 +1,6 @@
-"""Conversion of visualization_msgs/msg/Marker to the page's shapes, and a marker store.
+"""Conversion of visualization_msgs/msg/Marker to the page's shapes, and a store of such markers.
 
-The rules and their texts are RViz's.
+The rules and the texts of errors are RViz's.
 """
 
 from __future__ import annotations
@@ -29,17 +29,17 @@ _NO_UVS = np.empty((0, 2), dtype=np.float32)
 
 
 class BadMarkerError(ValueError):
-    """Raised when a marker cannot be drawn; the text gives the reason."""
+    """Raised when a marker cannot be drawn; the message gives the reason."""
 
 
 @dataclass(slots=True)
 class MarkerReading:
-    """A marker as it is drawn, before it is placed.
+    """The drawable form of a marker, before it is placed.
 
     Attributes:
-        shape: the shape, with the pose in the message's frame until it is placed.
+        shape: the shape, whose pose is set when the marker is placed.
         pose: the pose in the message's frame.
-        warning: a probable mistake in the message, or None.
+        warning: a text about a probable mistake in the message, or None.
     """
 
     shape: MarkerShape
@@ -60,18 +60,18 @@ def made_marker(
     colors: NDArray[np.float32] = _NO_COLORS,
     mesh: MarkerMesh | None = None,
 ) -> MarkerShape:
-    """Return a marker created from parts instead of a message.
+    """Return a drawable marker, created from parts instead of a message.
 
     Args:
         namespace: the marker's namespace.
         name: the marker's name within the namespace.
-        kind: the kind of its shape.
+        kind: the kind of the marker's shape.
         pose: x, y, z, qx, qy, qz, qw in `frame`.
         scale: x, y, z, as in visualization_msgs/msg/Marker for this kind.
         color: red, green, blue, alpha, from 0 to 1.
         frame: the frame that the marker follows; empty for the Fixed Frame.
         points: the points, shape (N, 3), metres.
-        colors: one colour for each point, shape (N, 4), or no colours.
+        colors: one colour for each point, shape (N, 4); empty to use `color`.
         mesh: the file of a ``mesh``.
     """
     return MarkerShape(
@@ -92,7 +92,7 @@ def made_marker(
 
 
 def marker_id(message: Any) -> str:
-    """Return the marker's name in RViz's status rows: ``<namespace>/<number>``."""
+    """Return the marker's ID, which RViz also shows in status rows: ``<namespace>/<number>``."""
     return f"{message.ns}/{message.id}"
 
 
@@ -136,7 +136,7 @@ def read_marker(message: Any, index: MeshIndex) -> MarkerReading:
 
 
 def placed_in(frame: Transform, reading: MarkerReading) -> list[float]:
-    """Return the marker's pose in the reference frame, given the pose of the marker's frame in it."""
+    """Return the marker's pose in a frame, given the pose of the message's frame in that frame."""
     return list(compose(frame, reading.pose))
 
 
@@ -151,9 +151,9 @@ def _pose(pose: Any) -> Transform:
 
 
 def unit_quaternion(q: Any) -> Quaternion:
-    """Return a geometry_msgs/msg/Quaternion with unit length.
+    """Return a geometry_msgs/msg/Quaternion, normalized to unit length.
 
-    An unset quaternion means no rotation, as in RViz.
+    A quaternion that is not set becomes the identity, as in RViz.
     """
     return normalized(q.x, q.y, q.z, q.w)
 
@@ -302,11 +302,10 @@ _MOST_GONE = 5000
 
 
 class MarkerStore:
-    """Markers by ID, with a revision for each change.
+    """The markers of a display by ID, with a revision number for each change.
 
-    With the revisions, a page receives the changes since its last one.
-
-    The store is the `outbox.Changes` of its display.
+    By the revision, a page receives only the changes since the last one that it has. The store is the `outbox.Changes`
+    of its display.
 
     Args:
         display: the ID of the display.
@@ -333,14 +332,14 @@ class MarkerStore:
         return [shape for _, shape in self._shown.values()]
 
     def put(self, shape: MarkerShape) -> None:
-        """Show a marker, replacing any marker with the same ID."""
+        """Add a marker, replacing any marker with the same ID."""
         self._change += 1
         self._gone.pop(shape.id, None)
-        self._shown.pop(shape.id, None)  # keeps the last change last in the order
+        self._shown.pop(shape.id, None)  # keeps the dict ordered by change
         self._shown[shape.id] = (self._change, shape)
 
     def remove(self, identity: str) -> bool:
-        """Remove a marker, and return whether it was shown."""
+        """Remove a marker, and return whether the store contained it."""
         if self._shown.pop(identity, None) is None:
             return False
         self._change += 1
@@ -358,7 +357,10 @@ class MarkerStore:
         self._gone.clear()
 
     def since(self, seen: int) -> tuple[bytes | None, int]:
-        """Return the changes since a revision, for a page that has all earlier changes."""
+        """Return the packed changes since a revision and the current revision; None if nothing changed.
+
+        `seen` is the last revision that the page has; all markers are packed if it is 0 or too old.
+        """
         if seen == self._change:
             return None, seen
         if self._packed is None or self._packed[:2] != (seen, self._change):

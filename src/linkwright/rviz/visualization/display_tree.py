@@ -27,9 +27,10 @@ class Edit(Generic[State]):
 
     Args:
         name: the name of the edit, for menus.
-        swap: restores a state, and returns the current one.
+        swap: restores a state, and returns the state that it replaced.
         before: the state before the edit.
-        subject: quick successive edits of one subject are merged, see `History.is_at`; None for no merging.
+        subject: identifies the edited value; quick successive edits of one subject are merged, see `History.is_at`.
+            None for an edit that is never merged.
     """
 
     def __init__(
@@ -41,7 +42,7 @@ class Edit(Generic[State]):
         self._other = before
 
     def turn(self) -> None:
-        """Undo the edit, or redo it after an undo."""
+        """Undo the edit if it is in effect, or redo it if it was undone."""
         self._other = self._swap(self._other)
 
 
@@ -64,17 +65,17 @@ class History:
 
     @property
     def undoable(self) -> EditName | None:
-        """The edit that `undo` would revert."""
+        """The name of the edit that `undo` would revert, or None."""
         return self._done[-1].name if self._done else None
 
     @property
     def redoable(self) -> EditName | None:
-        """The edit that `redo` would repeat."""
+        """The name of the edit that `redo` would repeat, or None."""
         return self._undone[-1].name if self._undone else None
 
     @property
     def unsaved(self) -> bool:
-        """Whether an edit is missing from the saved file."""
+        """Whether the current state differs from the saved file."""
         return self._touched or self._saved_at != len(self._done)
 
     def is_at(self, subject: str) -> bool:
@@ -86,14 +87,14 @@ class History:
         return follows and bool(self._done) and self._done[-1].subject == subject
 
     def prolong(self) -> None:
-        """Merge a change with the last edit, which keeps the older state."""
+        """Merge a change with the last edit, whose undo then reverts both."""
         self._last = self._clock()
 
     def add(self, edit: Edit[Any]) -> None:
-        """Add an edit that has been made."""
+        """Add an edit that has just been made, and discard the edits that could be redone."""
         self._last = self._clock()
         if self._saved_at is not None and self._saved_at > len(self._done):
-            self._saved_at = None  # the saved state is on the branch that is discarded here
+            self._saved_at = None  # the saved state cannot be reached again by redo
         self._undone.clear()
         self._done.append(edit)
         if len(self._done) > LONGEST:
@@ -150,8 +151,8 @@ MAXIMUM_NESTING = 20
 class DisplayTree:
     """The displays, which correspond to the entries of the configuration.
 
-    Changes made through this class can be undone. A removed display is stopped; undo creates another one with the same
-    ID and section of the file.
+    Changes made through this class can be undone. A removed display is stopped; undoing the removal creates another
+    display with the same ID and section of the file.
 
     Args:
         config: the configuration with the entries.
@@ -197,13 +198,13 @@ class DisplayTree:
             display.stop()
 
     def find(self, identity: str) -> ViewerDisplay | None:
-        """Return the display with an ID, or None."""
+        """Return the display with an ID, or None if there is none."""
         return next((display for display in self.displays if display.id == identity), None)
 
     # --- edits -------------------------------------------------------------------------------------------------
 
     def check(self, display: ViewerDisplay, value: bool) -> None:
-        """Enable or disable a display and its content."""
+        """Set the check box of a display, which also enables or disables a group's contents."""
         if value == display.config.checked:
             return
         before, enabled = display.config.box, self._enabled()
@@ -218,12 +219,12 @@ class DisplayTree:
         group: DisplayConfig | None = None,
         prepare: Callable[[ViewerDisplay], None] | None = None,
     ) -> ViewerDisplay:
-        """Add a display at the end of a group or of the list.
+        """Add a display at the end of a group or of the top level, and return the display.
 
         Args:
-            entry: the display's section of the file.
+            entry: the display's entry, which is not yet in the file.
             group: the group that will contain the display; None for the top level.
-            prepare: sets properties before the display starts.
+            prepare: called with the display before it starts, to set properties.
 
         Raises:
             ValueError: `group` is not a group, the display would be nested too deeply, or there are too many displays.
@@ -253,7 +254,7 @@ class DisplayTree:
         self._rearrange(_named("duplicate", displays), copy)
 
     def remove(self, displays: Sequence[ViewerDisplay]) -> None:
-        """Remove displays with their contents."""
+        """Remove displays; a group is removed with its contents."""
 
         def take_away() -> None:
             for entry in _outermost(displays):
@@ -264,7 +265,12 @@ class DisplayTree:
     def move(
         self, displays: Sequence[ViewerDisplay], group: DisplayConfig | None, before: DisplayConfig | None
     ) -> None:
-        """Move displays into a group, before one of its displays or to the end.
+        """Move displays into a group, or to the top level.
+
+        Args:
+            displays: the displays to move.
+            group: the group; None for the top level.
+            before: the entry to insert before; None for the end.
 
         Raises:
             ValueError: the target is not a group, is inside one of the displays, or the displays would be nested too
@@ -286,10 +292,10 @@ class DisplayTree:
         self._rearrange(_named("move", displays), shift)
 
     def gather(self, displays: Sequence[ViewerDisplay], name: str) -> None:
-        """Put displays into a new group, at the position of the first of them.
+        """Move displays into a new group at the position of the first of them.
 
         Raises:
-            ValueError: there are too many displays, or the group is nested too deeply.
+            ValueError: there are too many displays, or the group would be nested too deeply.
         """
         moved = _outermost(displays)
         around, at = moved[0].group, self._config.siblings(moved[0].group).index(moved[0])
@@ -324,7 +330,7 @@ class DisplayTree:
         self._rearranged()
         self._history.add(Edit(EditName("rename", name), swap, before))
 
-    # --- what edits do -----------------------------------------------------------------------------------------
+    # --- applying and reverting edits --------------------------------------------------------------------------
 
     def _swap_box(self, identity: str, box: list[Memory]) -> list[Memory]:
         """Restore the file's entry of a display's check box, and return the replaced entry."""
@@ -337,9 +343,9 @@ class DisplayTree:
         return now
 
     def _box_set(self, display: ViewerDisplay, enabled: dict[DisplayConfig, bool]) -> None:
-        """Send a display's check box to pages, and notify displays whose enabled state has changed.
+        """Send a display's check box to pages, and notify the displays that were enabled or disabled.
 
-        `enabled` is the state before the change.
+        `enabled` contains whether each display was enabled before the change.
         """
         display.set_checked(display.config.checked)
         for other in self.displays:
@@ -363,7 +369,12 @@ class DisplayTree:
         return {display.config: display.enabled for display in self.displays}
 
     def _follow(self, enabled: dict[DisplayConfig, bool], made: Sequence[ViewerDisplay] = ()) -> None:
-        """Match the displays to the entries: start new displays and stop removed ones."""
+        """Match the displays to the configuration's entries: start new displays and stop removed ones.
+
+        Args:
+            enabled: whether each display was enabled before the change.
+            made: displays that were already created for new entries.
+        """
         there = {display.config: display for display in self.displays}
         new = {display.config: display for display in made}
         entries = list(self._config.walk())
@@ -399,13 +410,16 @@ class DisplayTree:
 
 
 def _check_nesting(group: DisplayConfig | None, entries: Sequence[DisplayConfig], more: int = 0) -> None:
-    """Raise ValueError if entries in a group would be nested too deeply."""
+    """Raise ValueError if entries would be nested too deeply in a group.
+
+    `more` is the number of further groups that will enclose the entries.
+    """
     if _depth(group) + more + max(map(_height, entries)) > MAXIMUM_NESTING:
         raise ValueError(f"groups cannot be nested deeper than {MAXIMUM_NESTING}")
 
 
 def _depth(group: DisplayConfig | None) -> int:
-    """Return the number of groups that enclose the contents of a group."""
+    """Return how many groups enclose the contents of a group; 0 for None, the top level."""
     return 0 if group is None else 1 + _depth(group.group)
 
 
@@ -415,7 +429,7 @@ def _height(entry: DisplayConfig) -> int:
 
 
 def _outermost(displays: Sequence[ViewerDisplay]) -> list[DisplayConfig]:
-    """Return the entries of displays that are not inside another of the displays."""
+    """Return the entries of those displays that are not inside another one of them."""
     entries = [display.config for display in displays]
     return [entry for entry in entries if not any(entry in other.walk() for other in entries if other is not entry)]
 

@@ -55,7 +55,7 @@ class ManagerOwner(Protocol):
 
 
 class VisualizationManager:
-    """A configuration, its displays and their frames, for the pages that see them.
+    """A configuration with its displays and frames, for the pages that show it.
 
     Args:
         context: the viewer's node, files and pages.
@@ -65,14 +65,14 @@ class VisualizationManager:
     Attributes:
         context: the viewer's node, files and pages.
         pages: the pages that show the configuration.
-        view: the initial view of a page that opens, independent of the current views of other pages.
-        shows_whole_robot: whether no user has chosen a view; pages then fit the camera to the robot.
+        view: the view with which a new page opens, independent of the current views of other pages.
+        shows_whole_robot: whether no user has chosen a view, so that pages fit the camera to the robot.
         config: the current configuration.
         opened: the number of configurations opened so far.
         frames: the current frames.
         time: whether time is paused, and what it is synchronized with.
         tree: the displays, and the operations on them.
-        history: the edits.
+        history: the undo history.
     """
 
     def __init__(self, context: ViewerContext, config: RvizConfig, owner: ManagerOwner) -> None:
@@ -109,12 +109,12 @@ class VisualizationManager:
         self._synchronize()
 
     def close(self) -> None:
-        """Stop permanently."""
+        """Stop the displays and the transforms permanently."""
         self._stream.close()
         self.tree.stop()
 
     def open(self, config: RvizConfig) -> None:
-        """Open another configuration, and forget the edits of the previous one."""
+        """Replace the configuration and its displays, and clear the undo history."""
         self.tree.stop()
         self.config = config
         self.view, self.shows_whole_robot = config.views.current, config.shows_whole_robot
@@ -147,7 +147,7 @@ class VisualizationManager:
         self.pages.publish(message)
 
     def opening(self) -> tuple[list[ServerMessage], FrameTable, list[Payload]]:
-        """Return the initial messages for a new page: messages, then the frame table, then binary frames."""
+        """Return what a new page needs: messages, the frame table, and binary frames, to be sent in order."""
         self._stream.refresh()
         table, transforms = self._stream.opening
         messages: list[ServerMessage] = [self.tree_message()]
@@ -173,11 +173,11 @@ class VisualizationManager:
         return self.tree.displays
 
     def display(self, identity: str) -> ViewerDisplay | None:
-        """Return the display with an ID, or None."""
+        """Return the display with an ID, or None if there is none."""
         return self.tree.find(identity)
 
     def robot_models(self) -> list[RobotModelDisplay]:
-        """Return the displays that show robots."""
+        """Return the RobotModel displays, in the order of the Displays panel."""
         return [display for display in self.displays if isinstance(display, RobotModelDisplay)]
 
     def store(self, owner: str) -> PropertyStore:
@@ -194,7 +194,7 @@ class VisualizationManager:
         return display.properties
 
     def set_property(self, page: Page, identity: str, value: object) -> None:
-        """Set a property for a page; if the value is refused, reply with the current value."""
+        """Set a property for a page; if the value is refused, send the current value back to the page."""
         owner, _, rest = identity.partition("/")
         display = self.display(owner)
         if display is None and owner != GLOBAL:
@@ -208,7 +208,7 @@ class VisualizationManager:
         store = self.store(owner)
         path = store.find(identity)
         if path is None:
-            return  # a row of a robot or frame that was removed
+            return  # the row of a link or frame that no longer exists
         before = store.get(*path)
         try:
             self._edit(identity, path, lambda: self._set(display, path, value))
@@ -223,7 +223,7 @@ class VisualizationManager:
             self._set_option(path[0], value)
 
     def _edit(self, identity: str, path: Path, change: Callable[[], None]) -> None:
-        """Change a property with undo; the steps of a drag are a single edit."""
+        """Change a property with undo; quick successive changes, as in a drag, are one edit."""
         if self.history.is_at(identity):
             change()
             self.history.prolong()
@@ -235,12 +235,12 @@ class VisualizationManager:
             self.history.add(Edit(EditName("set", path[-1]), partial(self._swap_values, owner), before, identity))
 
     def set_fixed_frame(self, frame: str) -> None:
-        """Change the Fixed Frame with undo, as a page would."""
+        """Change the Fixed Frame like a page, so that the change can be undone."""
         path = (_FIXED_FRAME,)
         self._edit(self.config.options.identity(path), path, lambda: self._set_option(_FIXED_FRAME, frame))
 
     def _swap_values(self, owner: str, memories: list[Memory]) -> list[Memory]:
-        """Restore the file's entries of some properties, including missing keys, and return the replaced ones."""
+        """Restore former entries of properties in the file, and return the replaced ones."""
         now = self.store(owner).memories(memories)
         self._recall(owner, memories)
         return now
@@ -254,14 +254,19 @@ class VisualizationManager:
                 self._option_changed(path[0])
 
     def measured(self, diagonal: float, ground: float) -> None:
-        """Fit grid and axes, unless the user set them, to the size and ground, in m, of a drawn robot."""
+        """Fit the sizes of grid and axes that the user has not set to a robot that a page has measured.
+
+        Args:
+            diagonal: the diagonal of the robot's bounding box, m.
+            ground: the height of the ground below the robot, in the Fixed Frame, m.
+        """
         for config, path, value in self.config.sizes_for(diagonal, ground):
             for display in self.displays:
                 if display.config is config:
                     display.set_property(path, value)
 
     def edited(self) -> None:
-        """Record a change to the file that undo does not cover."""
+        """Record a change of the file that cannot be undone."""
         self.history.touch()
 
     # --- time --------------------------------------------------------------------------------------------------
@@ -276,7 +281,7 @@ class VisualizationManager:
             display.time_changed()
 
     def reset_time(self) -> None:
-        """Reset time: displays discard messages, and moving frames are unknown until they are published again."""
+        """Reset time: discard the messages of displays, and all transforms except static ones."""
         self.time.reset()
         self.context.transforms.forget()
         self._stream.forget()
@@ -284,7 +289,7 @@ class VisualizationManager:
             display.time_reset()
 
     def _synchronize(self) -> None:
-        """Apply the file's time synchronization, not paused."""
+        """Apply the time synchronization of the file, and resume time."""
         synchronization = read_synchronization(self.config.document)
         self.set_time(paused=False, mode=synchronization.mode, source=synchronization.source)
 
@@ -299,7 +304,7 @@ class VisualizationManager:
 
     @property
     def fixed_frame(self) -> str:
-        """The reference frame of the scene."""
+        """The Fixed Frame, in which everything is drawn."""
         return self._stream.fixed_frame
 
     def _set_option(self, name: str, value: object) -> None:
@@ -356,7 +361,7 @@ class VisualizationManager:
         return frozenset(link.frame for robot in self.robot_models() for link in robot.scene.links)
 
     def fading_changed(self) -> None:
-        """Handle a change of the Frame Timeout, or a display of frames that appeared or disappeared."""
+        """Apply the shortest Frame Timeout of the TF displays that are enabled."""
         shown = (display for display in self.displays if isinstance(display, TfDisplay) and display.enabled)
         self._stream.fade_time = min((display.properties.number(FRAME_TIMEOUT) for display in shown), default=None)
 
@@ -369,14 +374,14 @@ MOST_LINGERING = 8
 
 
 class Managers:
-    """The manager that pages share, and managers of single pages.
+    """The manager that most pages share, and the managers of pages that have their own.
 
-    The latter begin with a copy of the shared configuration.
+    A page's own manager begins with a copy of the shared configuration.
 
     Args:
         context: the viewer's node, files and pages.
-        config: the configuration of every page that does not ask for its own.
-        owner: the owner, which receives their events.
+        config: the configuration of every page that does not request its own.
+        owner: the owner of the managers, which receives their events.
     """
 
     def __init__(self, context: ViewerContext, config: RvizConfig, owner: ManagerOwner) -> None:
@@ -390,11 +395,11 @@ class Managers:
         return [self.shared, *self._own.values()]
 
     def of(self, page: Page) -> VisualizationManager:
-        """Return the manager for a page."""
+        """Return the manager of a page: its own, or the shared one."""
         return self._own.get(page.own, self.shared)
 
     def enter(self, page: Page) -> VisualizationManager:
-        """Return the manager for a page that opens, creating it if the page is the first to ask for it."""
+        """Return the manager of a page that opens; the page's own manager is created if necessary."""
         if page.own:
             end = self._ends.pop(page.own, None)
             if end is not None:
@@ -405,7 +410,7 @@ class Managers:
         return self.of(page)
 
     def leave(self, page: Page) -> None:
-        """Handle the closing of a page; a manager without pages is closed after a while."""
+        """Handle the closing of a page; its own manager is closed if the page does not return."""
         manager = self.of(page)
         manager.pages.discard(page)
         if manager is not self.shared and not len(manager.pages):

@@ -1,4 +1,4 @@
-"""Add shapes, lights and models to a world."""
+"""Adds shapes, lights and models to a world."""
 
 from __future__ import annotations
 
@@ -24,7 +24,10 @@ LightKind = Literal["point", "directional", "spot"]
 
 @dataclass(frozen=True, slots=True)
 class NewShape:
-    """The defaults of a new shape, in metres, kilograms and red, green, blue; without a mass it is static."""
+    """The defaults of a new shape: size in m, colour as red, green and blue, and mass in kg.
+
+    A shape whose mass is None is static.
+    """
 
     size: tuple[float, ...]
     colour: tuple[float, float, float]
@@ -77,14 +80,14 @@ def add_shape(
     Args:
         world: the world.
         kind: the kind of shape; walls and ramps are static, the others have a mass of 1 kg.
-        pose: the pose of its centre in the world: x, y, z in m, roll, pitch, yaw in rad.
+        pose: the pose of the shape's centre in the world: x, y, z in m, roll, pitch, yaw in rad.
         size: the size as in `SimpleShape`; empty for the default size.
 
     Returns:
         The changed world, and the name of the model.
 
     Raises:
-        EditError: the numbers are not valid for a shape.
+        EditError: the pose or the size is invalid.
     """
     usual = USUAL[kind]
     wanted = tuple(map(float, size)) or usual.size
@@ -112,7 +115,12 @@ def add_shape(
 
 
 def add_light(world: WorldText, kind: LightKind, pose: Sequence[float]) -> tuple[WorldText, str]:
-    """Add a light.
+    """Add a light with default properties.
+
+    Args:
+        world: the world.
+        kind: the kind of light.
+        pose: the pose of the light in the world: x, y, z in m, roll, pitch, yaw in rad.
 
     Returns:
         The changed world, and the name of the light.
@@ -126,15 +134,15 @@ def add_light(world: WorldText, kind: LightKind, pose: Sequence[float]) -> tuple
 
 
 def add_include(world: WorldText, address: str, pose: Sequence[float]) -> tuple[WorldText, str]:
-    """Include a model from another file.
+    """Add an include of a model from another file.
 
     Args:
         world: the world.
         address: ``model://NAME``, or any other value that ``<uri>`` may have.
-        pose: the pose of its frame in the world: x, y, z in m, roll, pitch, yaw in rad.
+        pose: the pose of the model's frame in the world: x, y, z in m, roll, pitch, yaw in rad.
 
     Returns:
-        The changed world, and the name of the model in it.
+        The changed world, and the name of the included model.
 
     Raises:
         EditError: there is no such model, or the pose is invalid.

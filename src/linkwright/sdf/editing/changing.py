@@ -1,7 +1,7 @@
-"""Change, copy and delete the models and lights of a world.
+"""Changes, copies and deletes the models and lights of a world.
 
-A world that Gazebo classic saved repeats all poses in ``<state>``, and those poses apply. Therefore moving, renaming or
-deleting an entity also changes the state, including its links.
+In a world that Gazebo classic saved, ``<state>`` repeats all poses and takes precedence. Therefore moving, renaming or
+deleting an entity also changes the state, including the poses of the entity's links.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ _FIRST = ("uri", "name")
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """The properties to change; None for properties that stay.
+    """The properties of an entity to change; None for properties that remain.
 
     Attributes:
         name: the name of the entity.
@@ -61,7 +61,7 @@ class Change:
 
 
 def change(world: WorldText, changes: Iterable[Change]) -> WorldText:
-    """Return a world with changed models and lights.
+    """Return a world with changes applied to models and lights.
 
     Args:
         world: the world.
@@ -112,7 +112,7 @@ def copy(world: WorldText, names: Sequence[str], offset: Sequence[float]) -> tup
 
 
 def delete(world: WorldText, names: Iterable[str]) -> WorldText:
-    """Return a world without the given models and lights, and without their parts of a saved state.
+    """Return a world without the given models and lights, and without their entries in a saved state.
 
     Raises:
         EditError: an entity does not exist, or a remaining element refers to it.
@@ -133,10 +133,10 @@ def delete(world: WorldText, names: Iterable[str]) -> WorldText:
 
 
 def pose_in_world(numbers: Sequence[float]) -> Pose:
-    """Return a pose from six numbers that a user has entered.
+    """Return a pose from six numbers that a user has entered: x, y, z in m, roll, pitch, yaw in rad.
 
     Raises:
-        EditError: they do not form a pose.
+        EditError: the numbers are not finite, or there are not six of them.
     """
     if len(numbers) != 6 or not all(map(isfinite, numbers)):
         raise EditError(phrase("a pose has six numbers: x y z roll pitch yaw"))
@@ -145,10 +145,7 @@ def pose_in_world(numbers: Sequence[float]) -> Pose:
 
 
 def pose_of_entity(entity: Entity) -> Pose:
-    """Return the pose of an entity in the world.
-
-    The exact numbers of the file are used if they are in that frame.
-    """
+    """Return the pose of an entity in the world, exactly as written if it is written in that frame."""
     own = entity.pose
     if own.pose.quaternion is None and not own.relative_to and transform_of(own.pose) == entity.place:
         return own.pose
@@ -156,10 +153,12 @@ def pose_of_entity(entity: Entity) -> Pose:
 
 
 def moved(world: WorldText, entity: Entity, pose: Pose) -> list[Replacement]:
-    """Return the edits that move an entity to a pose in the world, whatever frame its own pose is given in.
+    """Return the edits that move an entity to a pose in the world.
+
+    The entity's own pose may be given in any frame. Its poses in a saved state are also changed.
 
     Raises:
-        EditError: the frame of its pose does not exist.
+        EditError: the frame of the entity's pose does not exist.
     """
     wanted = transform_of(pose)
     edits = place(entity, _local(world, entity, pose))
@@ -169,7 +168,7 @@ def moved(world: WorldText, entity: Entity, pose: Pose) -> list[Replacement]:
 
 
 def place(entity: Entity, pose: Pose) -> list[Replacement]:
-    """Return the edits that write the pose of an entity, in the frame in which its pose is given."""
+    """Return the edits that write the ``<pose>`` of an entity, in the frame that the pose declares."""
     element = entity.element.first("pose")
     if element is not None:
         return writing.set_pose(element, pose)
@@ -178,19 +177,22 @@ def place(entity: Entity, pose: Pose) -> list[Replacement]:
 
 
 def state_of(world: WorldText, name: str) -> list[Element]:
-    """Return the parts of the last saved state that contain an entity."""
+    """Return the entries of the last saved state for an entity."""
     state = world.state
     entries = () if state is None else (*state.elements("model"), *state.elements("light"))
     return [entry for entry in entries if entry.attributes.get("name") == name]
 
 
 def named_in(element: Element, attribute: str | None) -> str:
-    """Return the name by which an element refers to another one."""
+    """Return the name to which an element refers, in an attribute or, if it is None, in the text."""
     return element.text().strip() if attribute is None else element.attributes[attribute]
 
 
 def renamed_references(world: WorldText, names: dict[str, str]) -> list[Replacement]:
-    """Return the edits that update all references to an entity, or to its parts, for new names."""
+    """Return the edits that update references to renamed entities and to their parts.
+
+    `names` maps old names to new ones.
+    """
     edits: list[Replacement] = []
     for element, attribute in writing.references(world.element):
         written = named_in(element, attribute)
@@ -205,7 +207,7 @@ def renamed_references(world: WorldText, names: dict[str, str]) -> list[Replacem
     return edits
 
 
-# --- single values -------------------------------------------------------------------------------------------------
+# --- simple properties ---------------------------------------------------------------------------------------------
 
 
 def _values(entity: Entity, wanted: Change) -> list[Replacement]:
@@ -258,7 +260,10 @@ def _resized(entity: Entity, size: tuple[float, ...]) -> list[Replacement]:
 
 
 def _same_values(owner: Element, new: Element) -> list[Replacement]:
-    """Return the edits that write the values of a new element into an existing one."""
+    """Return the edits that give a child of `owner` the values of a new element.
+
+    If there is no child with the same tag, the new element is inserted.
+    """
     edits: list[Replacement] = []
     found = list(owner.elements(new.tag))
     if not found:
@@ -353,7 +358,7 @@ def _named(entity: Entity, name: str) -> list[Replacement]:
 
 
 def _copied(entity: Entity, name: str) -> Replacement:
-    """Return the edit that inserts a copy after an entity.
+    """Return the edit that inserts a copy of an entity after it, under another name.
 
     The copy is on separate lines if the entity is on separate lines.
     """
@@ -370,9 +375,9 @@ def _copied(entity: Entity, name: str) -> Replacement:
 
 
 def _with_poses(world: WorldText, poses: dict[str, Pose], edits: Sequence[Replacement] = ()) -> WorldText:
-    """Return the world with edits and new poses.
+    """Return the world with `edits` applied and entities at new poses.
 
-    Each entity is moved after the one to which its pose is relative.
+    An entity whose pose is relative to another entity is moved after that entity.
     """
     alone = [name for name in poses if not world.entity(name).pose.relative_to]
     edits = [*edits, *(edit for name in alone for edit in moved(world, world.entity(name), poses[name]))]
@@ -383,7 +388,11 @@ def _with_poses(world: WorldText, poses: dict[str, Pose], edits: Sequence[Replac
 
 
 def _local(world: WorldText, entity: Entity, pose: Pose) -> Pose:
-    """Return a pose in the world, expressed in the frame in which an entity's pose is given."""
+    """Return a pose in the world, expressed in the frame in which an entity's pose is given.
+
+    Raises:
+        EditError: this frame does not exist.
+    """
     relative_to = entity.pose.relative_to
     placed = entity.model.placement_frame if entity.model is not None else ""
     if isinstance(entity.written, Model | Include):
@@ -401,7 +410,7 @@ def _local(world: WorldText, entity: Entity, pose: Pose) -> Pose:
 
 
 def _state_moved(entry: Element, old: Transform, new: Transform, pose: Pose) -> list[Replacement]:
-    """Return the edits that move an entity in the saved state, whose parts also have poses in the world."""
+    """Return the edits that move an entity and its parts in the saved state, given in the world."""
     by = compose(new, invert(old))
     edits: list[Replacement] = []
     for element in entry.walk():
@@ -421,7 +430,7 @@ def _state_moved(entry: Element, old: Transform, new: Transform, pose: Pose) -> 
 
 
 def _depth(world: WorldText, name: str) -> int:
-    """Return the length of the chain of frames to which the pose of an entity is relative."""
+    """Return the number of entities in the chain of relative poses that ends with an entity."""
     depth, seen = 0, set[str]()
     entity = world.entities.get(name)
     while entity is not None and entity.name not in seen:

@@ -6,10 +6,10 @@ from linkwright.diagnostics import Phrase
 
 
 class EditError(Exception):
-    """Raised when an edit is refused; the text gives the reason, as a sentence without a full stop.
+    """Raised when an edit is refused.
 
     Attributes:
-        message: the text.
+        message: the reason, as a sentence without a full stop.
     """
 
     def __init__(self, message: Phrase | str) -> None:

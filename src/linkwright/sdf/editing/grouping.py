@@ -1,4 +1,4 @@
-"""Group models into one model, and ungroup them."""
+"""Groups models into one model, and ungroups them."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _CDATA = re.compile(r"<!\[CDATA\[.*?\]\]>", re.DOTALL)
 
 
 def group(world: WorldText, names: Sequence[str], name: str) -> WorldText:
-    """Return a world with several models grouped into one, whose frame is in the middle of them.
+    """Return a world with several models grouped into one model, whose origin is their mean position.
 
     The models keep their poses in the world. Their entries in a saved state are removed, and the poses from there are
     written into the models.
@@ -51,7 +51,7 @@ def group(world: WorldText, names: Sequence[str], name: str) -> WorldText:
         edits += [writing.removed(entry) for entry in state_of(world, entity.name)]
         base = entity.pose.relative_to
         if base.partition(SEPARATOR)[0] in inside and not state_of(world, entity.name):
-            continue  # its pose remains relative to another model in the group
+            continue  # The pose remains relative to another model in the group.
         edits += _placed_in(world, entity, origin)
     edits += renamed_references_outside(world, inside, name)
     text = world.text
@@ -78,13 +78,15 @@ def group(world: WorldText, names: Sequence[str], name: str) -> WorldText:
 
 
 def ungroup(world: WorldText, name: str) -> tuple[WorldText, list[str]]:
-    """Return a world in which the parts of a model are separate models with the same poses in the world.
+    """Return a world in which the nested models of a group are separate models.
+
+    The models keep their poses in the world.
 
     Returns:
-        The changed world, and the names of the parts, which were changed if they were not free.
+        The changed world, and the names of the models, which were changed if they were not free.
 
     Raises:
-        EditError: the model contains more than its parts, or is from another file.
+        EditError: the group contains more than models, or is from another file.
     """
     entity = world.entity(name)
     model = entity.written
@@ -122,7 +124,7 @@ def ungroup(world: WorldText, name: str) -> tuple[WorldText, list[str]]:
 
 
 def renamed_references_outside(world: WorldText, inside: frozenset[str], group_name: str) -> list[Replacement]:
-    """Return the edits that adapt references from outside a group to its members."""
+    """Return the edits that update references to the members of a group from outside the group."""
     names = {name: f"{group_name}{SEPARATOR}{name}" for name in inside}
     ranges = [writing.range_of(world.entity(name).element) for name in inside]
     return [
@@ -149,7 +151,10 @@ def _check_group(entities: Sequence[Entity]) -> None:
 
 
 def _placed_in(world: WorldText, entity: Entity, origin: Transform) -> list[Replacement]:
-    """Return the edits that write an entity's pose relative to a group's origin, so that it does not move."""
+    """Return the edits that write the pose of an entity relative to a group's origin.
+
+    The pose of the entity in the world does not change.
+    """
     written = pose_of_entity(entity)
     x, y, z = (a - b for a, b in zip(written.xyz, origin[:3], strict=True))
     local = Pose((x, y, z), written.rpy)
@@ -165,7 +170,7 @@ def _placed_in(world: WorldText, entity: Entity, origin: Transform) -> list[Repl
 
 
 def _old_names(entity: Entity, parts: Sequence[Element]) -> list[str]:
-    """Return the names of parts within their group, in document order: models first, then includes."""
+    """Return the names of parts within their group, in the order of `parts`."""
     assert isinstance(entity.written, Model), "groups are models"
     assert entity.model is not None, "groups are models"
     models = [id(model.element) for model in entity.written.models]
@@ -186,7 +191,14 @@ def _names_of(world: WorldText, entity: Entity, parts: Sequence[Element]) -> dic
 def _let_out(
     world: WorldText, entity: Entity, element: Element, old: str, names: dict[str, str], there: Transform
 ) -> list[Replacement]:
-    """Return the edits in a part of a group that is moved out of the group."""
+    """Return the edits in a member of a group that is moved out of the group.
+
+    `old` is the name of the member, `names` maps the members' old names to new ones, and `there` is the pose of the
+    member in the world.
+
+    Raises:
+        EditError: the member's pose is relative to another frame of the group.
+    """
     assert entity.model is not None, "groups are models"
     model = next(model for model in entity.model.models if model.name == old)
     edits: list[Replacement] = []
@@ -223,12 +235,12 @@ def _let_out(
 
 
 def _shifted(text: str, step: str) -> str:
-    """Return a text with all lines except the first indented by one step; CDATA is not changed."""
+    """Return a text with all lines except the first indented by `step`; CDATA is not changed."""
     return _outside_cdata(text, lambda part: _LINE.sub(step, part))
 
 
 def _unshifted(text: str, step: str) -> str:
-    """Return a text with the indentation of `_shifted` removed."""
+    """Return a text with one indentation by `step` removed from each line; CDATA is not changed."""
     pattern = re.compile(rf"(?<=\n){re.escape(step)}")
     return _outside_cdata(text, lambda part: pattern.sub("", part)) if step else text
 

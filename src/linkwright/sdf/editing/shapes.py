@@ -1,7 +1,7 @@
-"""Models of one simple shape: recognise them, create their elements, and compute their masses.
+"""Models of one simple shape: recognises them, creates their elements, and computes their masses.
 
 A wall is a box whose link is called ``wall``. A ramp is a wedge that rises along x, a ``<polyline>`` with three corners
-in a link called ``ramp``. In this way, a plain SDF file preserves their kind.
+in a link called ``ramp``. In this way, a plain SDF file preserves the kind of these shapes.
 """
 
 from __future__ import annotations
@@ -49,7 +49,10 @@ class SimpleShape:
 
 
 def simple_shape(model: Model) -> SimpleShape | None:
-    """Return the shape of a model with one link whose visuals and collisions all have this shape, else None."""
+    """Return the shape of a model that consists of one simple shape, or None for any other model.
+
+    Such a model has one link, whose visuals and collisions all have this shape.
+    """
     if len(model.links) != 1 or model.joints or model.models or model.includes:
         return None
     link = model.links[0]
@@ -99,12 +102,12 @@ def _colour(material: Material | None) -> Color | None:
 
 
 def is_size(kind: str, size: tuple[float, ...]) -> bool:
-    """Return whether numbers are a valid size for a kind of shape."""
+    """Return whether numbers, in m, are a valid size of a kind of shape."""
     return len(size) == COUNTS[kind] and all(isfinite(value) and 1e-6 <= value <= 1e6 for value in size)
 
 
 def wedge(size: tuple[float, ...]) -> Polyline:
-    """Return the outline of a ramp as a polyline, which is extruded to its width.
+    """Return the triangular outline of a ramp as a polyline, which is extruded to the ramp's width.
 
     The x and y of the polyline are the x and z of the ramp.
     """
@@ -113,12 +116,12 @@ def wedge(size: tuple[float, ...]) -> Polyline:
 
 
 def ramp_pose(size: tuple[float, ...]) -> Pose:
-    """Return the pose of a ramp's polyline, lying on its side, in its link."""
+    """Return the pose in its link of a ramp's polyline, which is turned on its side."""
     return Pose((0.0, size[1] / 2, 0.0), (pi / 2, 0.0, 0.0))
 
 
 def solid(kind: str, size: tuple[float, ...]) -> MassProperties:
-    """Return the mass, centre of mass and inertia of a solid shape of density 1, in the frame of its link."""
+    """Return the mass properties of a solid shape with a density of 1 kg/m3, in the frame of its link."""
     if kind == "cylinder":
         return shape_properties(Cylinder(*size))
     if kind == "sphere":
@@ -128,42 +131,42 @@ def solid(kind: str, size: tuple[float, ...]) -> MassProperties:
     if kind != "ramp":
         return box
     mass = box.mass / 2
-    xx, yy, zz, xz = x * x / 18, y * y / 12, z * z / 18, x * z / 36  # second moments of a right triangle and a bar
+    xx, yy, zz, xz = x * x / 18, y * y / 12, z * z / 18, x * z / 36  # second moments of a triangular prism
     inertia = mass * np.array([[yy + zz, 0.0, -xz], [0.0, xx + zz, 0.0], [-xz, 0.0, xx + yy]])
     return MassProperties(mass, np.array([x / 6, 0.0, -z / 6]), inertia)
 
 
 def tensor(properties: MassProperties) -> dict[str, str]:
-    """Return the child elements of ``<inertia>`` with their texts."""
+    """Return the texts of the child elements of ``<inertia>``, by tag."""
     inertia = properties.inertia
     places = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2), "izz": (2, 2)}
     return {tag: number(float(inertia[at])) for tag, at in places.items()}
 
 
 def number(value: float) -> str:
-    """Format a number with six significant digits, as used for inertias."""
+    """Format a number with six significant digits, as used for masses and inertias."""
     return plain(float(f"{value:.6g}"))
 
 
 def length(value: float) -> str:
-    """Format a length or angle."""
+    """Format a length or angle, rounded to nine decimals."""
     return plain(round(value, DIGITS))
 
 
 def lengths(values: tuple[float, ...]) -> str:
-    """Format several lengths or angles."""
+    """Format several lengths or angles, separated by spaces."""
     return " ".join(map(length, values))
 
 
 def new_element(tag: str, *children: Element | str, **attributes: str) -> Element:
-    """Return a new element with a text or with children."""
+    """Return a new element with attributes, and with texts or elements as its children."""
     element = Element(tag, attributes)
     element.children.extend(Text(child) if isinstance(child, str) else child for child in children)
     return element
 
 
 def inertial(kind: str, size: tuple[float, ...], mass: float) -> Element:
-    """Return the ``<inertial>`` of a solid shape with a mass in kg."""
+    """Return the ``<inertial>`` element of a solid shape with a mass in kg."""
     properties = solid(kind, size).with_mass(mass)
     parts = [new_element("mass", number(mass))]
     if properties.center.any():
@@ -175,10 +178,7 @@ def inertial(kind: str, size: tuple[float, ...], mass: float) -> Element:
 
 
 def geometry(kind: str, size: tuple[float, ...]) -> list[Element]:
-    """Return the ``<geometry>`` of a shape.
-
-    A ``<pose>`` precedes it if the shape is not at the origin of its frame.
-    """
+    """Return the ``<geometry>`` element of a shape, after its ``<pose>`` element if it needs one."""
     if kind == "ramp":
         outline = wedge(size)
         points = (new_element("point", lengths(point)) for point in outline.points)

@@ -38,14 +38,14 @@ class Entity:
     """A model or light of a world.
 
     Attributes:
-        name: its name in the world.
-        kind: its kind.
-        element: the element that declares it.
+        name: the name in the world.
+        kind: whether the entity is a model or a light.
+        element: the element that declares the entity.
         written: the parsed element.
         model: the model, with its includes resolved; None for a light, and for an include that cannot be resolved.
         light: the light; None for a model.
-        place: the pose of its frame in the world.
-        shape: its shape, if it is one simple shape in this file.
+        place: the pose of the entity's frame in the world.
+        shape: the shape, for a model in this file that is one simple shape; None otherwise.
     """
 
     name: str
@@ -64,24 +64,24 @@ class Entity:
 
     @property
     def static(self) -> bool:
-        """Whether the entity is static."""
+        """Whether the entity is a static model."""
         if self.model is not None:
             return self.model.static
         return isinstance(self.written, Include) and bool(self.written.static)
 
     @property
     def parts(self) -> tuple[str, ...]:
-        """The names of the models in the entity, if it contains nothing else."""
+        """The names of the nested models in a group; empty for any other entity."""
         if not isinstance(self.written, Model) or self.model is None or self.written.links:
             return ()
         return tuple(model.name for model in self.model.models)
 
 
 class WorldText:
-    """The text of a world with its parsed content; in a file with several worlds, of the first world.
+    """The text of a world with its parsed content; the first world of a file with several.
 
     Args:
-        text: SDF.
+        text: the text of the file, in SDF.
         path: the file of the text; its folder is the base of relative addresses.
         finder: finds the included models.
         reserved: names that new entities cannot have, because the running world uses them.
@@ -89,7 +89,7 @@ class WorldText:
     Attributes:
         world: the world, with includes resolved and all poses from the last saved state.
         frames: the frames of `world`.
-        entities: its models and lights by their names, in the order of the text.
+        entities: the models and lights of `world` by name, in the order of the text.
 
     Raises:
         LinkwrightError: the text is not XML.
@@ -132,7 +132,7 @@ class WorldText:
         return self.world.states[-1].element if self.world.states else None
 
     def entity(self, name: str) -> Entity:
-        """Find a model or light by its name.
+        """Return the model or light with a name.
 
         Raises:
             EditError: there is no such model or light.
@@ -143,7 +143,7 @@ class WorldText:
             raise EditError(phrase("there is no '{name}' in the world's file", name=name)) from None
 
     def edited(self, edits: list[Replacement]) -> WorldText:
-        """Return the world after replacements in its text.
+        """Return the world after applying edits to its text.
 
         Raises:
             EditError: the result is not a world, which is a mistake in the caller's edits.
@@ -165,7 +165,10 @@ class WorldText:
             raise EditError(phrase("the text would not be SDF: {reason}", reason=found.message)) from None
 
     def free_name(self, wanted: str, taken: AbstractSet[str] | None = None) -> str:
-        """Return a free name: the preferred name, with a number appended if necessary."""
+        """Return a free name: the preferred name, or with another number appended if it is in use.
+
+        `taken` overrides the names that are in use.
+        """
         taken = self.taken if taken is None else taken
         if wanted not in taken:
             return wanted
@@ -177,10 +180,10 @@ class WorldText:
         return f"{stem}_{number}"
 
     def check_name(self, name: str) -> None:
-        """Check the name of a new entity.
+        """Check that a new entity can have a name.
 
         Raises:
-            EditError: the name is empty, already used, or has a special meaning in SDF.
+            EditError: the name is empty, already used, or reserved by SDF.
         """
         if not name.strip():
             raise EditError(phrase("a name cannot be empty"))
@@ -217,10 +220,10 @@ class WorldText:
             name = written.name or written.uri.strip().rstrip("/").rpartition("/")[2]
             pose = written.pose or AT_ORIGIN
             return Entity(name, "model", element, written, None, None, transform_of(pose.pose), None)
-        return None  # an actor, which cannot be edited
+        return None  # Actors cannot be edited.
 
     def _place(self, entity: Model | Light) -> Transform:
         try:
             return self.frames.pose(entity.name) if isinstance(entity, Model) else self.frames.placed(entity.pose)
         except FrameError:
-            return transform_of(entity.pose.pose)  # the check of frames reports the error
+            return transform_of(entity.pose.pose)  # `check` reports the missing frame

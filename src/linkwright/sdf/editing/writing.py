@@ -31,13 +31,13 @@ _TRUE = frozenset({"true", "1"})
 
 
 def text_of(element: Element) -> str:
-    """Return the text of the file that contains an element."""
+    """Return the whole text of the file that contains an element."""
     assert element.source is not None, "it was read from a text"
     return element.source.text
 
 
 def range_of(element: Element) -> tuple[int, int]:
-    """Return the range of an element in its text, from its ``<`` to the position after its last ``>``.
+    """Return the start and end of an element in its text: its ``<``, and the position after its ``>``.
 
     Raises:
         EditError: the element comes from an XML entity.
@@ -49,7 +49,7 @@ def range_of(element: Element) -> tuple[int, int]:
 
 
 def content_of(element: Element) -> tuple[int, int]:
-    """Return the range of an element's content; for ``<a/>`` an empty range at its end."""
+    """Return the start and end of an element's content; for ``<a/>`` an empty range after the tag."""
     start, end = range_of(element)
     tag = start_tag_of(element)
     assert tag is not None, "its range is known"
@@ -57,7 +57,7 @@ def content_of(element: Element) -> tuple[int, int]:
 
 
 def set_text(element: Element, value: str) -> list[Replacement]:
-    """Return the edits that set the text of an element; surrounding blanks stay."""
+    """Return the edits that set the text of an element; surrounding whitespace is kept."""
     text, (start, end) = text_of(element), content_of(element)
     tag = start_tag_of(element)
     assert tag is not None, "its content is known"
@@ -70,7 +70,7 @@ def set_text(element: Element, value: str) -> list[Replacement]:
 
 
 def set_numbers(element: Element, numbers: Sequence[float]) -> list[Replacement]:
-    """Return the edits that set the numbers of an element; equal numbers stay as written."""
+    """Return the edits that set the numbers of an element; unchanged numbers are kept as written."""
     text, (start, end) = text_of(element), content_of(element)
     plain = _COMMENT.sub(lambda found: " " * len(found[0]), text[start:end])
     words = list(re.finditer(r"\S+", plain))
@@ -93,9 +93,9 @@ def _has_value(word: str, number: float) -> bool:
 def set_child(
     owner: Element, tag: str, value: str | Sequence[float], *, after: tuple[str, ...] = ()
 ) -> list[Replacement]:
-    """Return the edits that set the value of a child.
+    """Return the edits that set the value of a child element.
 
-    A missing child is inserted after `after`, or at the end.
+    A missing child is inserted after the last child whose tag is in `after`, or at the end.
 
     Args:
         owner: the element.
@@ -113,8 +113,8 @@ def set_child(
 def inserted_in(owner: Element, new: list[Element], *, after: tuple[str, ...] = (), first: bool = False) -> Replacement:
     """Return the edit that inserts elements into another one.
 
-    They are inserted after the last child with a tag in `after`, otherwise at the end, or at the beginning with
-    `first`.
+    The new elements are inserted after the last child with a tag in `after`. If there is no such child, they are
+    inserted at the end, or at the beginning with `first`.
 
     Raises:
         EditError: the owner comes from an XML entity.
@@ -127,7 +127,7 @@ def inserted_in(owner: Element, new: list[Element], *, after: tuple[str, ...] = 
 
 
 def set_attribute(element: Element, name: str, value: str) -> list[Replacement]:
-    """Return the edits that set an attribute, keeping its quotes.
+    """Return the edits that set an attribute; its kind of quotes is kept.
 
     A missing attribute is inserted after the others.
     """
@@ -153,7 +153,7 @@ def set_reference(element: Element, attribute: str | None, name: str) -> list[Re
 
 
 def without_attribute(element: Element, name: str) -> list[Replacement]:
-    """Return the edits that remove an attribute, with the blanks before it."""
+    """Return the edits that remove an attribute and the whitespace before it."""
     text = text_of(element)
     named, found = (each(text, element.offset, name) for each in (attribute_name_range, attribute_value_range))
     if named is None or found is None:
@@ -163,12 +163,12 @@ def without_attribute(element: Element, name: str) -> list[Replacement]:
 
 
 def removed(element: Element) -> Replacement:
-    """Return the edit that removes an element with its content, and its lines if they contain nothing else."""
+    """Return the edit that removes an element, with its lines if they contain nothing else."""
     return Replacement(*whole_lines(text_of(element), *range_of(element)), "")
 
 
 def exchanged(element: Element, new: list[Element]) -> Replacement:
-    """Return the edit that replaces an element by others."""
+    """Return the edit that replaces an element by other elements, or removes it if there are none."""
     if not new:
         return removed(element)
     text, (start, end) = text_of(element), range_of(element)
@@ -178,7 +178,7 @@ def exchanged(element: Element, new: list[Element]) -> Replacement:
 
 
 def set_pose(element: Element, pose: Pose) -> list[Replacement]:
-    """Return the edits that set the numbers of a ``<pose>``, in the units and the form that it declares."""
+    """Return the edits that set a ``<pose>``, in the units and rotation format that it declares."""
     if element.attributes.get("rotation_format", "").strip() == "quat_xyzw":
         numbers: tuple[float, ...] = (*pose.xyz, *_nearest(element, quaternion_of(pose)))
     elif element.attributes.get("degrees", "").strip().casefold() in _TRUE:
@@ -189,7 +189,7 @@ def set_pose(element: Element, pose: Pose) -> list[Replacement]:
 
 
 def _nearest(element: Element, quaternion: Quaternion) -> Quaternion:
-    """Return the one of the two quaternions of a rotation that is nearer to the written one."""
+    """Return the quaternion or its negation, whichever is nearer to the quaternion in an element."""
     try:
         written = [float(word) for word in element.text().split()[3:]]
     except ValueError:
@@ -201,7 +201,7 @@ def _nearest(element: Element, quaternion: Quaternion) -> Quaternion:
 
 
 def pose_from(transform: Transform) -> Pose:
-    """Return a transform as a pose with angles, which is exact even where the pitch is 90 degrees."""
+    """Return a transform as a pose with angles, which are exact even at a pitch of 90 degrees."""
     x, y, z, w = transform[3:]
     along, across = 1 - 2 * (y * y + z * z), 2 * (x * y + z * w)
     pitch = atan2(-2 * (x * z - y * w), hypot(along, across))
@@ -218,7 +218,10 @@ def pose_element(pose: Pose) -> Element:
 
 
 def references(world: Element) -> Iterator[tuple[Element, str | None]]:
-    """Yield the references by name in a world: the element, and its attribute, or None for its text."""
+    """Yield the elements of a world that refer to other elements by name.
+
+    The attribute with the name follows each element; None if the name is the text of the element.
+    """
     for child in world.elements():
         for element in (child, *child.elements("sensor")):
             pose = element.first("pose")

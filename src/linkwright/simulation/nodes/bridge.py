@@ -111,13 +111,13 @@ class _Bridge(SingleNode):
         gz_type = TYPES_OF_GZ.get(topic.gz_type, topic.ros_type)
         gz_topic = "/" + self._gz_name(topic.gz_topic).lstrip("/")
         same_name = self._node.resolve_topic_name(topic.ros_topic) == gz_topic
-        if topic.ros_type == _CLOCK:  # the simulation publishes /clock
+        if topic.ros_type == _CLOCK:  # The simulation publishes /clock itself.
             return
         to_ros, to_gz = (topic.direction in (way, "BIDIRECTIONAL") for way in ("GZ_TO_ROS", "ROS_TO_GZ"))
         if same_name and topic.ros_type == gz_type:
             self._announce(topic, to_ros=to_ros, to_gz=to_gz)
             return
-        if same_name and to_gz:  # the name belongs to the topic of ROS, with its type
+        if same_name and to_gz:  # The ROS topic owns the shared name, so the gz side uses its hidden name.
             gz_topic = hidden_gz_topic(gz_topic)
         ros, gz = (self._node, topic.ros_topic, topic.ros_type), (self._gz_node, gz_topic, gz_type)
         if to_ros and not (same_name and to_gz):
@@ -134,7 +134,10 @@ class _Bridge(SingleNode):
             self._node.create_subscription(topic.ros_type, topic.ros_topic, lambda _: None, profile, raw=True)
 
     def _gz_name(self, name: str) -> str:
-        """Return the name of a gz topic, expanded with the node's namespace if that is configured."""
+        """Return a gz topic name, below the node's namespace if ``expand_gz_topic_names`` is set.
+
+        An absolute name is returned unchanged.
+        """
         return join(self._node.get_namespace(), name) if self._expands and not name.startswith("/") else name
 
     def _hand_on(self, topic: BridgedTopic, source: _Side, target: _Side) -> None:
@@ -181,7 +184,9 @@ class _Bridge(SingleNode):
 
 
 class ParameterBridge(_Bridge):
-    """The running bridge of the topics in its arguments, or in the file of its parameter ``config_file``.
+    """The node of ``parameter_bridge``.
+
+    It bridges the topics in its arguments and in the file that its parameter ``config_file`` names.
 
     Raises:
         LinkwrightError: NODE820, an argument or the file is invalid; NODE821, the file cannot be read.
@@ -202,7 +207,7 @@ class ParameterBridge(_Bridge):
     def _is_service(self, word: str) -> bool:
         """Return whether an argument is a service, ``SERVICE@ROS_TYPE``.
 
-        Services are not bridged, which is logged.
+        Services are not bridged, so a warning is logged for each of them.
         """
         name, _, types = word.partition("@")
         is_service = "/srv/" in types.partition("@")[0]
@@ -212,7 +217,7 @@ class ParameterBridge(_Bridge):
 
 
 class StaticBridge(_Bridge):
-    """The running bridge of ``chatter``, the string topic of the examples."""
+    """The node of ``static_bridge``, which bridges ``chatter``, the string topic of the examples."""
 
     DEFAULT_NAME = "ros_gz_bridge"
 
@@ -222,7 +227,10 @@ class StaticBridge(_Bridge):
 
 
 class ImageBridge(_Bridge):
-    """The running bridge of the image topics in its arguments; it publishes JPEG images on request, too."""
+    """The node of ``image_bridge``, which bridges the image topics in its arguments.
+
+    The images are also published as JPEG while a compressed topic has subscribers.
+    """
 
     DEFAULT_NAME = "ros_gz_image"
 
@@ -233,7 +241,7 @@ class ImageBridge(_Bridge):
             self._compress(word)
 
     def _compress(self, topic: str) -> None:
-        """Publish the images as JPEG, too, while a node subscribes to the compressed topic."""
+        """Publish the images of a topic as JPEG while the compressed topic has subscribers."""
         name = f"{self._node.resolve_topic_name(topic)}/compressed"
 
         def forward(image: Any) -> None:
@@ -259,7 +267,9 @@ class ImageBridge(_Bridge):
 
 
 def parse_bridge_argument(word: str) -> BridgedTopic:
-    """Parse an argument ``TOPIC@ROS_TYPE@GZ_TYPE``, where ``[`` or ``]`` restricts the direction.
+    """Parse an argument ``TOPIC@ROS_TYPE@GZ_TYPE``.
+
+    ``[`` in place of the second ``@`` bridges only from gz to ROS, and ``]`` only from ROS to gz.
 
     Raises:
         LinkwrightError: NODE820, the argument has another form.

@@ -1,4 +1,4 @@
-"""Convert the command lines of Gazebo's programs to parameters of the node that replaces them.
+"""Converts the command lines of Gazebo's programs to parameters of the substitute nodes.
 
 Of the many options of `gazebo`, `gzserver` and `gz sim`, only the world, the paused start, the random seed and the ROS
 arguments have an effect here. The node's parameters are ``world``, ``pause`` and ``seed``, and ``gui`` for a server
@@ -38,7 +38,7 @@ def simulator_command(words: Sequence[str]) -> NodeCommand | None:
 
 
 def classic_server(words: Sequence[str], *, window: bool = False) -> NodeCommand:
-    """Parse the words after ``gzserver``, or after ``gazebo``, which has a window."""
+    """Parse the arguments of ``gzserver``, or of ``gazebo``, which also opens a window."""
     own, ros = _split_ros_arguments(words)
     options, others = _read(own, _CLASSIC_VALUES.split())
     parameters = _seed(options) | ({"gui": True} if window else {})
@@ -50,7 +50,7 @@ def classic_server(words: Sequence[str], *, window: bool = False) -> NodeCommand
 
 
 def gz_server(words: Sequence[str]) -> NodeCommand:
-    """Parse the words after ``gz sim``; without ``-r`` the simulation starts paused."""
+    """Parse the arguments of ``gz sim``; without ``-r`` the simulation starts paused."""
     own, ros = _split_ros_arguments(words)
     options, others = _read(own, _GZ_VALUES.split())
     if "-g" in options:
@@ -68,10 +68,11 @@ def _split_ros_arguments(words: Sequence[str]) -> tuple[list[str], list[str]]:
 
 
 def _read(words: list[str], with_value: Sequence[str]) -> tuple[dict[str, str], list[str]]:
-    """Return the options with their values (empty for flags), and the other words, without whitespace-only ones.
+    """Split arguments into options with their values and positional arguments.
 
-    A launch file without a world passes ``gzserver`` an empty word. It counts as the world, so the words after it do
-    not name one.
+    A flag has an empty value. Arguments that consist only of spaces are dropped, but empty ones are kept: a launch file
+    without a world passes ``gzserver`` an empty argument. This argument counts as the world, so the arguments after it
+    do not name one.
     """
     options, others = {}, []
     rest = [word for word in words if word.strip() or not word]

@@ -1,4 +1,4 @@
-"""Convert messages for bridges that have different types on their two sides.
+"""Message conversions for bridges whose two sides have different types.
 
 Source: ros_gz_bridge (the ROS types to which each gz type can be converted).
 """

@@ -1,4 +1,4 @@
-"""create of ros_gz_sim, which spawns a model."""
+"""The program ``create`` of ros_gz_sim, which spawns a model."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ _TRUE = ("", "true", "1", "yes", "t", "y")
 
 
 class Create(EntitySpawner):
-    """The running node, which ends with status 0 after the entity was spawned.
+    """The node of ``create``, which spawns an entity and then ends with status 0.
 
     Raises:
-        LinkwrightError: NODE812, neither its command line nor its parameters name a description, or a number is
+        LinkwrightError: NODE812, neither the command line nor the parameters name a description, or a number is
             invalid; NODE811, the file cannot be read.
     """
 
@@ -74,7 +74,10 @@ class Create(EntitySpawner):
 
 
 def _with_free_name(entity: Entity, names: Sequence[str]) -> Entity:
-    """Return the entity with a free name, numbered as gz numbers it."""
+    """Return the entity under a name that is not in `names`, with a number appended if necessary.
+
+    As in gz, the numbers begin with 0: ``box``, ``box_0``, ``box_1``.
+    """
     name, number = entity.name, 0
     while name in names:
         name, number = f"{entity.name}_{number}", number + 1

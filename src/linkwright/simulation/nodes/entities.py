@@ -1,6 +1,7 @@
-"""remove, delete_entity and set_entity_pose of ros_gz_sim, which remove and move models of a world.
+"""The programs ``remove``, ``delete_entity`` and ``set_entity_pose`` of ros_gz_sim.
 
-Source: ros_gz_sim (parameters, options). There, numeric IDs identify models, too; models do not have any here.
+Source: ros_gz_sim (parameters, options). In ros_gz_sim, models can also be named by a numeric ID; here, models have no
+ID.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ _MODEL, _LINK = "6", "2"
 
 
 class Remove(SimulatorClient):
-    """remove: removes the model that its parameter ``entity_name`` names, and ends.
+    """The node of ``remove``, which removes the model that its parameter ``entity_name`` names.
 
     Raises:
         LinkwrightError: NODE812, the parameter is empty.
@@ -49,7 +50,7 @@ class Remove(SimulatorClient):
         self._ask(_DELETE, "delete_entity", get_service(_DELETE).Request(name=name), self._answered)
 
     def _answered(self, response: Any) -> None:
-        """End with the status that corresponds to ``success`` in a response, and log its ``status_message``."""
+        """Log the result in a response, and end with status 0 if the request succeeded, else with 1."""
         if response.success:
             self._log("Result: true")
             self._end(0)
@@ -58,7 +59,7 @@ class Remove(SimulatorClient):
 
 
 class DeleteEntity(Remove):
-    """delete_entity: removes the model that ``--name`` names, and ends.
+    """The node of ``delete_entity``, which removes the model that ``--name`` names.
 
     Raises:
         LinkwrightError: NODE812, the command line is invalid.
@@ -74,7 +75,7 @@ class DeleteEntity(Remove):
 
 
 class SetEntityPose(Remove):
-    """set_entity_pose: sets the pose of the model or link that ``--name`` names, and ends.
+    """The node of ``set_entity_pose``, which sets the pose of the model or link that ``--name`` names.
 
     Raises:
         LinkwrightError: NODE812, the command line is invalid.

@@ -1,4 +1,4 @@
-"""Reload the files of a running simulation when they are saved, no matter which program started it."""
+"""Reloads the files of a running simulation when any program saves them."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ _LOAD_WORLD = "simulation_interfaces/srv/LoadWorld"
 def follow_files(node: Node, server: SimulationServer, services: Services, host: FileFollower) -> None:
     """Reload the world and the spawned robots when their files are saved.
 
-    The viewers show errors in the robots' models. A robot is only followed if this process has expanded its description
-    from a file.
+    The viewers show errors in the robots' models. A robot is reloaded only if this process expanded the robot's
+    description from a file.
 
     Args:
         node: the simulator's node.

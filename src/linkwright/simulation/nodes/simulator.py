@@ -1,7 +1,7 @@
-"""gzserver: the node ``gazebo``, a simulated world with its plugins, topics and services.
+"""The program gzserver: the node ``gazebo``, a simulated world with its plugins, topics and services.
 
-It follows the gzserver of Gazebo classic with the libraries of gazebo_ros, and also serves as the server of gz. Its
-world is simulated in a separate thread, see `linkwright.simulation.server`.
+The node follows the gzserver of Gazebo classic with the libraries of gazebo_ros, and also serves as the server of gz.
+The world is simulated in a separate thread, see `linkwright.simulation.server`.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ _PAUSED = (
 
 
 class Simulator(SingleNode):
-    """The running node.
+    """The simulator's node.
 
     Its parameters:
 
@@ -67,9 +67,9 @@ class Simulator(SingleNode):
     ``seed``, ``pause``, ``seconds``
         the random seed; whether to start paused; the simulated seconds after which to end, 0 for never.
     ``gui``
-        whether to open a page with the world, which the host of the node does.
+        whether the host of the node opens a page with the world.
     ``usual_names``
-        whether gz topics also have their usual names.
+        whether gz topics are also available under the names that are usual on robots.
     ``gazebo_mistakes``
         whether plugins reproduce the known mistakes of Gazebo, see docs/simulation.md.
     ``robot_description``, ``robot_name``, ``robot_pose``, ``robot_namespace``
@@ -156,11 +156,14 @@ class Simulator(SingleNode):
         super().close()
 
     def _systems(self) -> Sequence[Plugin]:
-        """Return the plugins for a world that does not name any."""
+        """Return the default plugins of a world that does not declare any."""
         return ()
 
     def _renew(self, robot: str, parameters: Sequence[Parameter]) -> SetParametersResult:
-        """Replace the robot by its changed description, keeping its state; refuse an invalid description."""
+        """Replace the robot when its description changes, and keep its state.
+
+        The result rejects an invalid description and gives the reason.
+        """
         from linkwright.simulation.plugins.entities import in_one_line
 
         for parameter in parameters:
@@ -179,7 +182,7 @@ class Simulator(SingleNode):
         self._reports.publish_state(paused=self.runner.paused)
 
     def _log(self, findings: Iterable[Diagnostic]) -> None:
-        """Log each finding about the world and its parts that are not simulated once."""
+        """Log the findings as errors or warnings, without repeating a message."""
         logger = self._node.get_logger()
         first: dict[str, Diagnostic] = {}
         for finding in findings:
@@ -195,7 +198,10 @@ class Simulator(SingleNode):
 
 
 class GzServer(Simulator):
-    """The running node in place of the server of gz, which gives a world without plugins the defaults of gz."""
+    """The simulator's node in place of the server of gz.
+
+    A world without plugins gets the default plugins of gz.
+    """
 
     def _systems(self) -> Sequence[Plugin]:
         from linkwright.simulation.plugins.registry import SYSTEMS_OF_GZ

@@ -1,4 +1,4 @@
-"""spawn_entity.py of gazebo_ros, which spawns a model with the service ``/spawn_entity``."""
+"""The program spawn_entity.py of gazebo_ros, which spawns a model with the service ``/spawn_entity``."""
 
 from __future__ import annotations
 
@@ -14,7 +14,9 @@ from linkwright.simulation.nodes.spawner import Entity, EntitySpawner, read_desc
 
 
 class SpawnEntity(EntitySpawner):
-    """The running node, which ends with status 0 after the entity was spawned.
+    """The node of spawn_entity.py, which spawns an entity and then ends with status 0.
+
+    With ``-b``, the node runs until it is closed.
 
     Raises:
         LinkwrightError: NODE810, the command line is invalid; NODE811, the file cannot be read.
@@ -91,7 +93,7 @@ class SpawnEntity(EntitySpawner):
 
 
 def parse(words: Sequence[str]) -> argparse.Namespace:
-    """Parse the options of a command line: long options after a single dash.
+    """Parse the command line, whose long options begin with a single dash.
 
     Raises:
         LinkwrightError: NODE810, the command line is invalid.

@@ -1,4 +1,4 @@
-"""The base classes of programs that call a simulator's services: spawn_entity.py and create of ros_gz_sim."""
+"""The base classes of programs that call a simulator's services, such as spawn_entity.py."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ class Entity:
 
     Attributes:
         name: the name of the model in the world.
-        xyz: its position in metres.
-        rpy: its roll, pitch and yaw in radians.
-        namespace: the ROS namespace of its plugins.
-        reference_frame: the frame of its pose; the world if empty.
+        xyz: the position in metres.
+        rpy: the roll, pitch and yaw in radians.
+        namespace: the ROS namespace of the model's plugins.
+        reference_frame: the frame of the pose; the world if empty.
     """
 
     name: str
@@ -42,7 +42,7 @@ class Entity:
 
 
 def spawn_request(entity: Entity, text: str) -> Any:
-    """Return the request of the service ``/spawn_entity`` for an entity; `text` is its URDF or SDF."""
+    """Return a request of ``/spawn_entity`` for an entity; `text` is the entity's URDF or SDF."""
     request = get_service(SPAWN_SERVICE).Request(
         name=entity.name, xml=text, robot_namespace=entity.namespace, reference_frame=entity.reference_frame
     )
@@ -75,10 +75,13 @@ class SimulatorClient(SingleNode):
         self.finished = asyncio.get_running_loop().create_future()
 
     def _ask(self, kind: str, name: str, request: Any, then: Callable[[Any], None]) -> None:
-        """Call a service of the simulator, and pass the response to a function."""
+        """Call a service of the simulator, and pass the response to `then`.
+
+        If the service is not available within the timeout, log an error and end with status 1.
+        """
         path = f"{self._service_namespace}/{name}"
         client = self._node.create_client(get_service(kind), path)
-        future = client.call_async(request)  # the call waits until there is a server
+        future = client.call_async(request)  # The request is sent when the service becomes available.
         future.add_done_callback(lambda done: then(done.result()))
         if client.service_is_ready():
             return
@@ -111,7 +114,7 @@ class SimulatorClient(SingleNode):
 class EntitySpawner(SimulatorClient):
     """A node that spawns one entity and ends.
 
-    Derived classes create `_node`, call `_prepare`, and then one of the methods that get a description.
+    Derived classes create `_node`, call `_prepare`, and then `_wait_for` or `_spawn`.
     """
 
     _entity: Entity
@@ -127,14 +130,14 @@ class EntitySpawner(SimulatorClient):
     # --- getting a description ------------------------------------------------------------------------------------
 
     def _wait_for(self, topic: str) -> None:
-        """Receive the description from a topic, including a latched one that was published before."""
+        """Spawn the first description that a topic delivers, which includes a latched description."""
         self._log(f"Waiting for entity xml on {topic}")
         self._node.create_subscription(String, topic, lambda message: self._spawn(message.data), DESCRIPTION_QOS)
 
     # --- the request ----------------------------------------------------------------------------------------------
 
     def _spawn(self, text: str) -> None:
-        """Spawn a description once the simulator is available; only the first one is used."""
+        """Spawn the entity from its URDF or SDF once the simulator is available; ignore later calls."""
         if self._described:
             return
         self._described = True
@@ -152,7 +155,7 @@ class EntitySpawner(SimulatorClient):
         self._spawned()
 
     def _spawned(self) -> None:
-        """End with status 0 after the entity was spawned."""
+        """End with status 0. Called when the simulator reports that the entity was spawned."""
         self._end(0)
 
 

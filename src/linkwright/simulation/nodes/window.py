@@ -1,4 +1,4 @@
-"""A substitute for Gazebo's window: a node that logs the address where the world can be viewed."""
+"""A substitute for Gazebo's window: a node that refers the user to the page in the browser."""
 
 from __future__ import annotations
 
@@ -7,7 +7,10 @@ from linkwright.nodes.options import NodeOptions, SingleNode, create_node
 
 
 class Window(SingleNode):
-    """The running node, which does nothing until it is closed; launch files then end all processes."""
+    """The node of ``gzclient``, which runs without effect until it is closed.
+
+    Launch files end all other processes when this node ends.
+    """
 
     DEFAULT_NAME = "_gzclient"  # hidden, because gzclient is not a node
 

@@ -1,6 +1,6 @@
-"""The simulation bar, and the moving of models in a simulated world, only through topics and services.
+"""The simulation bar, and the dragging of models in a simulated world, by topics and services only.
 
-Source of their names: gazebo_ros and simulation_interfaces.
+Source of the topic and service names: gazebo_ros and simulation_interfaces.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ _ACTIONS = {
 
 @dataclass(slots=True)
 class _Drag:
-    """A model that a page moves: its original pose, once known, and the newest pose that was not sent yet."""
+    """A model that a page drags: its initial state, once known, and the newest offset not yet sent."""
 
     model: str
     start: Any = None
@@ -64,7 +64,10 @@ class _Drag:
 
 
 class SimulationFeature(PageFeature):
-    """Sends the state of a simulation to pages and forwards their requests; subscribes while there are pages."""
+    """The feature that sends the state of a simulation to pages, and forwards the pages' requests.
+
+    The topics are subscribed only while pages are open.
+    """
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -202,7 +205,7 @@ class SimulationFeature(PageFeature):
         """Return the name and description of the model at an address; None for a world without a model.
 
         Raises:
-            LinkwrightError: the address cannot be found or read.
+            LinkwrightError: there is no file at the address, or the file cannot be read.
         """
         from linkwright.sdf.resources import ResourceFinder  # imported here, because few viewers show a world
         from linkwright.sdf.writer import save
@@ -235,7 +238,7 @@ class SimulationFeature(PageFeature):
             self._put(page, drag)
 
     def _put(self, page: Page, drag: _Drag) -> None:
-        """Send the newest pose after the simulation has answered the previous request."""
+        """Send the newest pose, or wait until the simulation has answered the previous request."""
         if drag.start is None or drag.target is None or drag.calling:
             return
         start = drag.start.pose.position

@@ -1,4 +1,4 @@
-"""Call the services of a simulation for pages, and report failures to them."""
+"""Calls of simulation services on behalf of pages, which receive reports of failures."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class SimulationServices:
         answered: Callable[[Any], None] = lambda _: None,
         refused: Phrase | None = None,
     ) -> None:
-        """Call a service; the page receives an error if there is no such service, or if it refuses.
+        """Call a service, and report to the page if the service does not exist or the call fails.
 
         Args:
             page: the page that requests the call.
@@ -42,7 +42,7 @@ class SimulationServices:
             name: the service's name.
             fields: the fields of the request.
             answered: called with the response, or with None if there is no such service.
-            refused: the text for the page if the response gives no reason.
+            refused: the text for the page if the response reports a failure without a reason.
         """
         client = self._clients.get(name)
         if client is None:
@@ -66,7 +66,7 @@ class SimulationServices:
         future.add_done_callback(done)
 
     def close(self) -> None:
-        """Destroy the clients; they are created again when they are needed."""
+        """Destroy the clients; later calls create new ones."""
         with suppress(ValueError):  # the node may have been destroyed before
             for client in self._clients.values():
                 self._node.destroy_client(client)

@@ -1,1 +1,4 @@
-"""Plugins and sensors of models, found through entry points; they replace the libraries of Gazebo classic and gz."""
+"""Plugins and sensors of models, which replace the libraries of Gazebo classic and gz.
+
+They are found through entry points.
+"""

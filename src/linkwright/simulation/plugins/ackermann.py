@@ -47,7 +47,7 @@ class AckermannParameters:
 
 
 class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
-    """``libgazebo_ros_ackermann_drive.so``."""
+    """The substitute for ``libgazebo_ros_ackermann_drive.so``: drives and steers a car."""
 
     PARAMETERS = AckermannParameters
     CARRIED = ("_speed", "_angle", "_distance")
@@ -151,9 +151,9 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
             self._way.publish(get_message("std_msgs/msg/Float32")(data=self._distance))
 
     def _drive(self, seconds: float) -> None:
-        """Turn and steer the wheels for the commanded motion.
+        """Set the wheel speeds, and steer towards the commanded angle for `seconds`.
 
-        The inner front wheel is steered further, so that both roll about one point.
+        The inner front wheel is steered further than the outer one, so that both roll about one point.
         """
         for motor in self._motors:
             motor.target = self._speed / self._radius

@@ -1,7 +1,7 @@
-"""gz topics whose names a bridge uses in ROS with another type.
+"""gz topics whose names a bridge also uses in ROS, but with another type.
 
 Topics of gz are topics of the graph under their own names. A bridge from ``geometry_msgs/msg/TwistStamped`` to
-``gz.msgs.Twist`` with one name for both sides, as Jazzy's robots have it, would give this topic two types. Therefore
+``gz.msgs.Twist`` with one name for both sides, as in the robots of Jazzy, would give this topic two types. Therefore
 the gz side gets a hidden name as soon as there is such a bridge, in this process or in another one.
 """
 
@@ -16,12 +16,15 @@ _HIDDEN = "/_gz"
 
 
 def hidden_gz_topic(topic: str) -> str:
-    """Return the hidden name under which a gz topic has its own type; both names are absolute."""
+    """Return the hidden name that a gz topic gets when a bridge uses its name for another type.
+
+    Both names are absolute.
+    """
     return _HIDDEN + topic
 
 
 class BridgedTopics:
-    """Notifies the plugins of a simulation when a bridge starts to use the name of a topic they subscribe to.
+    """A watcher that notifies a simulation's plugins when a bridge starts to use a topic's name.
 
     Args:
         node: the simulator's node.
@@ -44,7 +47,7 @@ class BridgedTopics:
         return topic in self._bridged([topic])
 
     def notify(self, topic: str, move: Callable[[], None]) -> None:
-        """Register a function to be called when a bridge offers a topic under another type."""
+        """Register a function to be called once, when a bridge offers a topic under another type."""
         self._moves.setdefault(topic, []).append(move)
 
     def forget(self, topic: str, move: Callable[[], None]) -> None:
@@ -67,7 +70,7 @@ class BridgedTopics:
                 move()
 
     def _bridged(self, topics: list[str]) -> list[str]:
-        """Return the topics whose hidden names have publishers."""
+        """Return the topics in `topics` whose hidden names have publishers."""
         outside = {
             remote_endpoint.name
             for remote_endpoint in self._graph.remote_endpoints()

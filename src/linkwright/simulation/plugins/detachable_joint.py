@@ -36,7 +36,7 @@ class DetachableJointParameters:
 
 
 class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
-    """``gz-sim-detachable-joint-system``."""
+    """The substitute for ``gz-sim-detachable-joint-system``: attaches a link of another model."""
 
     PARAMETERS = DetachableJointParameters
 
@@ -67,7 +67,7 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
             self._attach()
 
     def resume(self, before: SimulatedPlugin[DetachableJointParameters]) -> None:
-        """Attach the child that the previous instance held."""
+        """Attach the child if the previous instance held it or was to attach it; otherwise detach it."""
         assert isinstance(before, GzDetachableJoint)
         if before._is_attached or before._is_wanted:
             self._hold(None)
@@ -87,7 +87,10 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
         self._detach()
 
     def _attach_if_found(self) -> None:
-        """Attach the child, if requested, once it is in the world, or again after it was replaced."""
+        """Attach the child if this is requested and the child is in the world.
+
+        A child that was replaced while it was attached is attached again.
+        """
         if self._is_attached and not self.simulation.scene.is_welded(self._parent, self._child):
             self._is_attached, self._is_wanted = False, True
         if not self._is_wanted:

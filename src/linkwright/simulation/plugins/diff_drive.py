@@ -1,7 +1,8 @@
 """Differential drive: ``libgazebo_ros_diff_drive.so`` of ROS 2 and ROS 1, and ``gz-sim-diff-drive-system``.
 
-Source: gazebo_ros_pkgs for ROS 2 and gz-sim (parameters, topics, defaults, the limiter, odometry). Unlike there, a
-robot that drives backward has a negative velocity in its wheel odometry, unless Gazebo's mistakes are requested.
+Source: gazebo_ros_pkgs for ROS 2 and gz-sim (parameters, topics, defaults, the limiter, odometry). Unlike in
+gazebo_ros_pkgs, a robot that drives backward has a negative velocity in its wheel odometry, unless Gazebo's mistakes
+are requested.
 """
 
 from __future__ import annotations
@@ -80,7 +81,7 @@ class GzParameters(GzDriveParameters):
 
 @dataclass(frozen=True, slots=True)
 class _Pair:
-    """Two wheels on one axis: their motors, their joint names in the simulation, and how they move the robot."""
+    """Two wheels on one axis: their motors, their joint names in the simulation, and their kinematics."""
 
     left: Motor
     right: Motor
@@ -89,7 +90,7 @@ class _Pair:
 
 
 class _DiffDrive(SimulatedPlugin[P], Generic[P]):
-    """A differential drive: sets wheel speeds from the commanded velocity, and odometry from the wheels' rotation."""
+    """A differential drive that follows a commanded velocity, with odometry from the wheels' rotation."""
 
     CARRIED: ClassVar[tuple[str, ...]] = ("_wanted", "_now", "_place")
     _pairs: tuple[_Pair, ...]
@@ -103,7 +104,11 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
     def _fit_wheels(
         self, left: tuple[str, ...], right: tuple[str, ...], sizes: list[tuple[float, float]], torque: float
     ) -> None:
-        """Create motors for the wheels; `sizes` holds the separation and the radius of each pair, in m."""
+        """Create motors for the wheels; `sizes` holds the separation and radius of each pair, in m.
+
+        Raises:
+            LinkwrightError: SIM160, a size is not positive, or the numbers of left and right wheels differ.
+        """
         if len(left) != len(right):
             message = phrase(
                 "plugin '{plugin}' has {left} left wheels, but {right} right wheels",
@@ -165,7 +170,7 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
 
 
 class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
-    """``libgazebo_ros_diff_drive.so``."""
+    """The substitute for ``libgazebo_ros_diff_drive.so``."""
 
     PARAMETERS: ClassVar[type[Any]] = ClassicParameters
     CARRIED: ClassVar[tuple[str, ...]] = (*_DiffDrive.CARRIED, "_wheel_speeds")
@@ -231,7 +236,7 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
             self._topics.publish(stamp, self._place.transform, published, 0.0, angular)
 
     def _drive(self) -> None:
-        """Accelerate the wheels towards the command, within the acceleration limit in m/s2 at their rims."""
+        """Accelerate the wheels towards the commanded velocity, within the limit for their rims in m/s2."""
         forward, angular = self._wanted
         for number, pair in enumerate(self._pairs):
             wanted, now = pair.drive.wheel_speeds(forward, angular), self._wheel_speeds[number]
@@ -245,7 +250,7 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
             self._turn(number, _step_towards(now[0], wanted[0], change), _step_towards(now[1], wanted[1], change))
 
     def _turn(self, number: int, left: float, right: float) -> None:
-        """Set the velocity of a pair of wheels, in rad/s."""
+        """Set the velocities of the wheels of pair `number`, in rad/s."""
         pair = self._pairs[number]
         self._wheel_speeds[number] = left, right
         pair.left.target, pair.right.target = left, right
@@ -263,7 +268,7 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
 
 
 class GzDiffDrive(_DiffDrive[GzParameters]):
-    """``gz-sim-diff-drive-system``."""
+    """The substitute for ``gz-sim-diff-drive-system``."""
 
     PARAMETERS = GzParameters
 
@@ -305,10 +310,10 @@ class GzDiffDrive(_DiffDrive[GzParameters]):
 
 
 def _step_towards(now: float, to: float, greatest: float) -> float:
-    """Return a value moved towards another one, by no more than the maximum change."""
+    """Return `now` moved towards `to` by no more than `greatest`."""
     return min(max(to, now - greatest), now + greatest)
 
 
 def _one_per_pair(values: tuple[float, ...], count: int) -> tuple[float, ...]:
-    """Return one value for each pair; the last value is repeated where some are missing."""
+    """Return exactly `count` values: repeat the last value if there are too few, and drop extra ones."""
     return (*values, *(values[-1:] * count))[:count]

@@ -20,7 +20,7 @@ _WHOLE_WORLD = ("", WORLD, "map", "/map")
 
 
 class Entities:
-    """Models and links of a simulation, by the names that the services of gazebo_ros use.
+    """Access to the models and links of a simulation by the names that gazebo_ros's services use.
 
     Args:
         simulation: the simulation of the world.
@@ -30,7 +30,7 @@ class Entities:
         self._simulation = simulation
 
     def link(self, name: str) -> str:
-        """Find a link by its full name, ``model::link``, or by its unique link name.
+        """Return the full name, ``model::link``, of a link that is named fully or by its link name.
 
         The link name is sufficient if only one model has such a link.
 
@@ -40,7 +40,7 @@ class Entities:
         return self._one(name, self._simulation.scene.bodies)
 
     def joint(self, name: str) -> str:
-        """Find a joint by its full name, ``model::joint``, or by its unique joint name.
+        """Return the full name, ``model::joint``, of a joint that is named fully or by its joint name.
 
         The joint name is sufficient if only one model has such a joint.
 
@@ -50,7 +50,7 @@ class Entities:
         return self._one(name, self._simulation.scene.joints)
 
     def model(self, name: str) -> str:
-        """Find a model by its name.
+        """Return the name of a model, after checking that the model exists.
 
         Raises:
             LinkwrightError: SIM141, there is no such model.
@@ -60,7 +60,7 @@ class Entities:
         return name
 
     def frame(self, name: str) -> Transform:
-        """Return the pose of a model or link in the world.
+        """Return the pose of a model or link in the world; the identity for the world itself.
 
         Raises:
             LinkwrightError: SIM141, there is no such entity.
@@ -76,7 +76,7 @@ class Entities:
 
         Args:
             name: the name of the model or link.
-            reference: the model or link in whose frame the state is expressed.
+            reference: the model or link in whose frame the state is expressed; the world if empty.
 
         Raises:
             LinkwrightError: SIM141, there is no such entity.
@@ -97,7 +97,7 @@ class Entities:
         """Set the pose and twist of a model from a message ``gazebo_msgs/msg/EntityState``.
 
         Raises:
-            LinkwrightError: SIM141, there is no such entity; SIM103, it is fixed to the world.
+            LinkwrightError: SIM141, there is no such entity; SIM103, the model is fixed to the world.
         """
         name, frame = self.model(state.name), self.frame(state.reference_frame)
         self._simulation.set_model_pose(name, compose(frame, transform_in(state.pose)))
@@ -138,7 +138,10 @@ def _nothing(name: str, known: Collection[str]) -> LinkwrightError:
 
 
 def fill_response(response: Any, work: Callable[[], str]) -> Any:
-    """Do the work, and return the response with `success` and `status_message`, the reason for a failure."""
+    """Call `work`, and return the response with `success` and `status_message`.
+
+    `status_message` is the text that `work` returns, or the reason for a failure.
+    """
     try:
         response.success, response.status_message = True, work()
     except LinkwrightError as error:
@@ -149,7 +152,7 @@ def fill_response(response: Any, work: Callable[[], str]) -> Any:
 def _answered_without_text(
     response: Any, work: Callable[[], object], service: str, log: Callable[[Phrase], object]
 ) -> Any:
-    """Do the work, and return the response with `success`; `log` receives the reason for a failure."""
+    """Call `work`, and return the response with `success`; `log` receives the reason for a failure."""
     try:
         work()
         response.success = True
@@ -160,7 +163,7 @@ def _answered_without_text(
 
 
 def refusal_text(service: str, error: LinkwrightError) -> Phrase:
-    """Return the reason for refusing a request as one text."""
+    """Return the reason why a service refused a request, with the hint in parentheses."""
     finding = error.diagnostics[0]
     if finding.hint:
         return phrase("{service}: {problem} ({hint})", service=service, problem=finding.message, hint=finding.hint)
@@ -190,5 +193,5 @@ def transform_in(message: Any) -> Transform:
 
 
 def numbers(vector: Any) -> tuple[float, float, float]:
-    """Return the x, y and z of a message as numbers."""
+    """Return the x, y and z of a point or vector message as a tuple."""
     return vector.x, vector.y, vector.z

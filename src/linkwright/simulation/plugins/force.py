@@ -28,7 +28,7 @@ class ForceParameters:
 
 
 class ClassicForce(SimulatedPlugin[ForceParameters]):
-    """``libgazebo_ros_force.so``."""
+    """The substitute for ``libgazebo_ros_force.so``."""
 
     PARAMETERS = ForceParameters
     CARRIED = ("_wrench",)

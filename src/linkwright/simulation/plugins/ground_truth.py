@@ -60,10 +60,11 @@ class GzOdometryParameters:
 
 
 class ClassicPose(SimulatedPlugin[ClassicPoseParameters]):
-    """``libgazebo_ros_p3d.so``: publishes the pose of a link in the world or in the frame of another link.
+    """The substitute for ``libgazebo_ros_p3d.so``: publishes the pose of a link.
 
-    Velocities are expressed in the axes of the world or of the other link. gazebo_ros_p3d rotates the latter the wrong
-    way, which is reproduced where Gazebo's mistakes are requested.
+    The pose is expressed in the world or in the frame of another link. Velocities are expressed in the axes of the
+    world or of the other link. gazebo_ros_p3d rotates velocities into the axes of another link the wrong way, which
+    is reproduced if Gazebo's mistakes are requested.
     """
 
     PARAMETERS = ClassicPoseParameters
@@ -104,15 +105,15 @@ class ClassicPose(SimulatedPlugin[ClassicPoseParameters]):
 
 
 class GzOdometry(SimulatedPlugin[GzOdometryParameters]):
-    """``gz-sim-odometry-publisher-system``: publishes the pose of a model in the world, and its velocity.
+    """The substitute for ``gz-sim-odometry-publisher-system``: publishes a model's pose and velocity.
 
-    The velocity is in the axes of the model.
+    The pose is expressed in the world, and the velocity in the axes of the model.
     """
 
     PARAMETERS = GzOdometryParameters
 
     def start(self) -> None:
-        """Create the topics."""
+        """Create the topics for odometry and transforms."""
         parameters, model, node = self.parameters, self.place.path, self.node
         self._child = parameters.robot_base_frame or f"{model}/base_footprint"
         self._frame = parameters.odom_frame or f"{model}/odom"
@@ -169,7 +170,7 @@ def _with_noise(random: np.random.Generator, deviation: float, linear: Array, an
 
 
 def _odometry(header: Header, child: str, pose: Transform, linear: Array, angular: Array, variance: float) -> Any:
-    """Return an odometry message that has the same variance for all measured values."""
+    """Return an odometry message with the same variance for all components of pose and twist."""
     message = get_message("nav_msgs/msg/Odometry")(header=header, child_frame_id=child)
     x, y, z, *rotation = pose
     message.pose.pose.position.x, message.pose.pose.position.y, message.pose.pose.position.z = x, y, z

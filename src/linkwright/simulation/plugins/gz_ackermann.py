@@ -1,7 +1,7 @@
 """Ackermann steering of gz: ``gz-sim-ackermann-steering-system``.
 
 Source: gz-sim (parameters, topics, defaults, the angles of the wheels, odometry; ``angular.z`` of a command is the yaw
-rate of the car). Unlike in gz-sim, the gain determines how fast a wheel is steered to its angle, under any load.
+rate of the car). Unlike in gz-sim, the gain determines how fast a wheel is steered to its angle, whatever the load.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class SteeringParameters(GzDriveParameters):
 
 
 class GzAckermann(SimulatedPlugin[SteeringParameters]):
-    """``gz-sim-ackermann-steering-system``: a car, or only its steering."""
+    """The substitute for ``gz-sim-ackermann-steering-system``: drives a car, or only steers it."""
 
     PARAMETERS = SteeringParameters
     CARRIED = ("_angle", "_place")
@@ -146,7 +146,7 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
         self._steer(*ackermann_angles(parameters.wheel_base * curvature, parameters.kingpin_width * curvature))
 
     def _curvature(self, forward: float, angular: float) -> float:
-        """Return the commanded curvature in 1/m, positive to the left, no tighter than the limit."""
+        """Return the commanded curvature in 1/m, positive to the left, clipped to the steering limit."""
         parameters = self.parameters
         greatest = sin(parameters.steering_limit) / parameters.wheel_base
         if abs(angular) < _SLOW:
@@ -169,7 +169,10 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
         self._steer(atan(slope / (along - across)), atan(slope / (along + across)))
 
     def _steer(self, left: float, right: float) -> None:
-        """Steer towards the angles in rad, at a speed that is the gain times the error."""
+        """Steer towards the angles in rad for one update period.
+
+        The steering speed is the gain times the error, within the limits of the parameters.
+        """
         parameters = self.parameters
         for servos, angle in zip(self._servos, (left, right), strict=True):
             for servo in servos:
@@ -184,7 +187,7 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
 
     @property
     def _turn(self) -> float:
-        """The yaw in rad per metre driven, at the current steering angles."""
+        """The change of yaw in rad per metre driven, at the measured steering angles."""
         left, right = (self.simulation.joint_state(joint)[0] for joint in self._steering)
         return tan((left + right) / 2.0) / self.parameters.wheel_base
 

@@ -34,7 +34,7 @@ class GzDriveParameters(SpeedLimits):
 
 
 class DriveCommands:
-    """The limited commanded velocity: forward and to the left in m/s, around z in rad/s.
+    """The commanded velocity of a drive, with limits: forward and left in m/s, about z in rad/s.
 
     Args:
         limits: the limits of velocity, acceleration and jerk.
@@ -55,11 +55,11 @@ class DriveCommands:
             limiter.restart()
 
     def resume(self, before: DriveCommands) -> None:
-        """Take over the velocity of other commands with the same limits."""
+        """Take over the velocity, the command and the enabled state of a predecessor with equal limits."""
         self.is_enabled, self._wanted, self._limiters = before.is_enabled, before._wanted, before._limiters
 
     def set_command(self, twist: Any) -> None:
-        """Set the command from a ``geometry_msgs/msg/Twist``."""
+        """Set the command from a ``geometry_msgs/msg/Twist``, unless the drive is disabled."""
         if self.is_enabled:
             self._wanted = (float(twist.linear.x), float(twist.linear.y), float(twist.angular.z))
 
@@ -75,7 +75,10 @@ class DriveCommands:
             self.rest()
 
     def next_velocity(self) -> tuple[float, float, float]:
-        """Return the next velocity within the limits; call this `GZ_RATE` times per simulated second."""
+        """Advance the limited velocity towards the command, and return the new velocity.
+
+        Call this `GZ_RATE` times per simulated second.
+        """
         pairs = zip(self._limiters, self._wanted, strict=True)
         forward, sideways, angular = (limiter.follow(wanted, 1.0 / GZ_RATE) for limiter, wanted in pairs)
         return forward, sideways, angular
@@ -84,7 +87,7 @@ class DriveCommands:
 def connect_drive(
     plugin: SimulatedPlugin[Any], parameters: GzDriveParameters, commands: DriveCommands
 ) -> OdometryTopics:
-    """Create the odometry topics of a drive, subscribe to its commands, and return the topics."""
+    """Subscribe to the commands of a drive, and create and return its odometry topics."""
     model, node = plugin.place.path, plugin.node
     frame = parameters.frame_id or f"{model}/odom"
     child = parameters.child_frame_id or f"{model}/{plugin.first_link.rpartition(SEPARATOR)[2]}"

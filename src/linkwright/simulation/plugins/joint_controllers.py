@@ -76,14 +76,14 @@ P = TypeVar("P", bound=ControllerParameters)
 
 
 class _JointController(SimulatedPlugin[P], Generic[P]):
-    """Holds joints at the commanded value `_wanted`, which it receives on a topic."""
+    """A plugin that keeps joints at the value `_wanted`, which is commanded on a topic."""
 
     IGNORED = ("use_actuator_msg", "actuatorNumber")
 
     _wanted: float
 
     def _begin(self) -> None:
-        """Create the PID controllers of the joints."""
+        """Create a PID controller for each joint."""
         self._controllers = [Pid(self.parameters.gains) for _ in self._joints]
 
     def reset(self) -> None:
@@ -98,7 +98,10 @@ class _JointController(SimulatedPlugin[P], Generic[P]):
             simulation.keep_awake(simulation.scene.joints[joint].child)
 
     def _listen(self, leaf: str) -> None:
-        """Subscribe to the commands, on the topic of the parameters or on one named after the first joint."""
+        """Subscribe to the commands, on the configured topic or on the default topic of the first joint.
+
+        `leaf` is the last part of the default topic's name.
+        """
         parameters = self.parameters
         topic = (
             parameters.topic
@@ -112,11 +115,17 @@ class _JointController(SimulatedPlugin[P], Generic[P]):
         self._wanted = float(message.data)
 
     def _rest(self) -> bool:
-        """Stop a motion that would not end on its own; return whether there was one. A position is held."""
+        """Stop a commanded motion, and return whether the joints were commanded to move.
+
+        A commanded position is held, so there is nothing to stop by default.
+        """
         return False
 
     def _push(self, derivative: int) -> None:
-        """Apply the PID forces of one step, for errors of the positions (0) or the velocities (1)."""
+        """Apply the PID forces of one step to the joints.
+
+        `derivative` selects the controlled value: 0 for the position, 1 for the velocity.
+        """
         seconds = self.simulation.step / NANOSECONDS_PER_SECOND
         for joint, controller in zip(self._joints, self._controllers, strict=True):
             error = self._wanted - self.simulation.joint_state(joint)[derivative]
@@ -124,10 +133,11 @@ class _JointController(SimulatedPlugin[P], Generic[P]):
 
 
 class GzJointPosition(_JointController[PositionParameters]):
-    """``gz-sim-joint-position-controller-system``.
+    """The substitute for ``gz-sim-joint-position-controller-system``.
 
-    With ``use_velocity_commands`` a joint moves straight to the commanded position, as fast as its limit and
-    ``cmd_max`` allow, and stays there under any load. Without it, a PID controller applies forces to the joint.
+    With ``use_velocity_commands``, a joint moves straight to the commanded position, as fast as its limit and
+    ``cmd_max`` allow, and stays there under any load. Without this parameter, a PID controller applies forces to the
+    joint.
     """
 
     PARAMETERS = PositionParameters
@@ -162,12 +172,15 @@ class GzJointPosition(_JointController[PositionParameters]):
 
 
 class GzJointVelocity(_JointController[VelocityParameters]):
-    """``gz-sim-joint-controller-system``: a motor holds a velocity, or a PID controller applies forces to the joint."""
+    """The substitute for ``gz-sim-joint-controller-system``, which controls the velocity of joints.
+
+    A motor holds the velocity, or with ``use_force_commands`` a PID controller applies forces to the joint.
+    """
 
     PARAMETERS = VelocityParameters
 
     def start(self) -> None:
-        """Find the joints, and create their motors."""
+        """Find the joints, create their motors, and subscribe to the commands."""
         self._find_joints()
         self._motors = []
         if not self.parameters.use_force_commands:

@@ -21,7 +21,7 @@ class JointForceParameters:
 
 
 class GzJointForce(SimulatedPlugin[JointForceParameters]):
-    """``gz-sim-apply-joint-force-system``."""
+    """The substitute for ``gz-sim-apply-joint-force-system``."""
 
     PARAMETERS = JointForceParameters
     CARRIED = ("_force",)

@@ -27,7 +27,7 @@ class JointPoseParameters:
 
 
 class ClassicJointPoses(SimulatedPlugin[JointPoseParameters]):
-    """``libgazebo_ros_joint_pose_trajectory.so``."""
+    """The substitute for ``libgazebo_ros_joint_pose_trajectory.so``."""
 
     PARAMETERS = JointPoseParameters
     IGNORED = ("serviceName",)
@@ -61,7 +61,7 @@ class ClassicJointPoses(SimulatedPlugin[JointPoseParameters]):
         self._due = max(int(stamp.sec) * NANOSECONDS_PER_SECOND + int(stamp.nanosec), self.simulation.time)
 
     def _move(self) -> None:
-        """Set the joints to the next point of the trajectory if it is due."""
+        """Set the joints to the next point of the trajectory once the time of this point is reached."""
         if not self._points or self.simulation.time < self._due:
             return
         point = self._points.popleft()

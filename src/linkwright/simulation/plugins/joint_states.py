@@ -35,7 +35,7 @@ class GzParameters:
 
 
 class _JointStates(SimulatedPlugin[P], Generic[P]):
-    """Publishes the positions and velocities of joints with one axis."""
+    """A plugin that publishes the positions and velocities of joints with one axis."""
 
     def _publish_joints(self, names: list[str], joints: list[str], rate: float, topic: str, usual: str = "") -> None:
         self._names, self._joints = names, joints
@@ -54,7 +54,7 @@ class _JointStates(SimulatedPlugin[P], Generic[P]):
 
 
 class ClassicJointStates(_JointStates[ClassicParameters]):
-    """``libgazebo_ros_joint_state_publisher.so``."""
+    """The substitute for ``libgazebo_ros_joint_state_publisher.so``."""
 
     PARAMETERS = ClassicParameters
 
@@ -75,12 +75,12 @@ class ClassicJointStates(_JointStates[ClassicParameters]):
 
 
 class GzJointStates(_JointStates[GzParameters]):
-    """``gz-sim-joint-state-publisher-system``."""
+    """The substitute for ``gz-sim-joint-state-publisher-system``."""
 
     PARAMETERS = GzParameters
 
     def start(self) -> None:
-        """Find the joints that are named, or all movable joints if none is named."""
+        """Find the joints that the parameters name, or all movable joints if the parameters name none."""
         begin = f"{self.place.path}::"
         moving = [
             name for name, placed in self.simulation.scene.joints.items() if name.startswith(begin) and placed.axes

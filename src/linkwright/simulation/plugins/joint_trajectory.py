@@ -1,7 +1,7 @@
 """Joints that follow a trajectory: ``gz-sim-joint-trajectory-controller-system``.
 
-Source: gz-sim (parameters, topics, defaults, when each point is approached). Joints are held at a point until the next
-one is due; positions between two points are not interpolated.
+Source: gz-sim (parameters, topics, defaults, when each point is approached). Joints are held at a point until the time
+of the next point; positions between two points are not interpolated.
 """
 
 from __future__ import annotations
@@ -46,9 +46,9 @@ class TrajectoryParameters:
     velocity_cmd_offset: Many = ()
 
     def gains(self, kind: str, number: int) -> Gains:
-        """Return the gains of one joint for ``position`` or ``velocity``.
+        """Return the gains of joint `number` for ``position`` or ``velocity``.
 
-        Without gains, the controller has no effect.
+        Gains that are not set are zero, so the controller has no effect.
         """
 
         def value(name: str, default: float) -> float:
@@ -77,13 +77,19 @@ class _Joint:
         self._by_velocity = Pid(parameters.gains("velocity", number))
 
     def aim(self, point: Any, number: int) -> None:
-        """Set the targets from item `number` of a point's lists; values that the point omits remain."""
+        """Set the targets from item `number` of the lists of a trajectory point.
+
+        A target without a value in the point remains unchanged.
+        """
         self.position = _nth(point.positions, number, self.position)
         self.velocity = _nth(point.velocities, number, self.velocity)
         self.effort = _nth(point.effort, number, self.effort)
 
     def force(self, position: float, velocity: float, seconds: float) -> float:
-        """Return the force in N m (N) for a position and a velocity, `seconds` after the last call."""
+        """Return the force in N m (N) towards the targets, given the current position and velocity.
+
+        `seconds` is the time since the last call.
+        """
         force = self._by_position.force(self.position - position, seconds)
         return force + self._by_velocity.force(self.velocity - velocity, seconds) + self.effort
 
@@ -92,7 +98,7 @@ class _Joint:
 class _Trajectory:
     """A trajectory that is being followed.
 
-    `start` is its start time in ns, and `index` the index of the point that is being approached.
+    `start` is the start time in ns, and `index` the index of the point that is being approached.
     """
 
     message: Any
@@ -104,7 +110,7 @@ class _Trajectory:
         return self.index + 1 >= len(self.message.points)
 
     def advance(self, time: int) -> bool:
-        """Advance to the point that is due at a time; return whether the point has changed."""
+        """Advance to the point to approach at a time in ns; return whether the point has changed."""
         before = self.index
         while not self.is_at_last and self.start + _nanoseconds(self._point.time_from_start) < time:
             self.index += 1
@@ -115,7 +121,7 @@ class _Trajectory:
         return self.message.points[self.index]
 
     def aim(self, joint_of: Callable[[str], _Joint | None]) -> None:
-        """Set the targets of the joints that the point names."""
+        """Set the targets of the joints that the trajectory names to the current point."""
         for number, name in enumerate(self.message.joint_names):
             joint = joint_of(name)
             if joint is not None:
@@ -123,7 +129,7 @@ class _Trajectory:
 
 
 class GzJointTrajectory(SimulatedPlugin[TrajectoryParameters]):
-    """``gz-sim-joint-trajectory-controller-system``."""
+    """The substitute for ``gz-sim-joint-trajectory-controller-system``."""
 
     PARAMETERS = TrajectoryParameters
 
@@ -146,7 +152,7 @@ class GzJointTrajectory(SimulatedPlugin[TrajectoryParameters]):
         self.every(0.0, self._move)
 
     def reset(self) -> None:
-        """Hold the joints at the initial positions of the parameters, and drop the trajectory."""
+        """Drop the trajectory, and hold the joints at the initial positions of the parameters."""
         self._joints = {
             name: _Joint(inside, number, self.parameters)
             for number, (name, inside) in enumerate(zip(self._names, self._inside, strict=True))
@@ -168,7 +174,10 @@ class GzJointTrajectory(SimulatedPlugin[TrajectoryParameters]):
         self._follow(self._trajectory)
 
     def _follow(self, trajectory: _Trajectory) -> None:
-        """Approach the point that is due, and publish the progress, from 0 to 1."""
+        """Set the targets to the current point, and publish the progress, from 0 to 1.
+
+        The trajectory ends with its last point.
+        """
         trajectory.aim(self._joints.get)
         progress = (trajectory.index + 1) / len(trajectory.message.points)
         self._progress.publish(get_message("std_msgs/msg/Float32")(data=progress))

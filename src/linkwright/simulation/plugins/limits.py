@@ -1,6 +1,6 @@
 """Limits of velocity, acceleration and jerk, as parameters of gz's drives.
 
-Source: gz-sim's drives.
+Source: gz-sim (the parameters of its drives).
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from linkwright.kinematics.limits import SpeedLimiter
 
 @dataclass(frozen=True, kw_only=True)
 class SpeedLimits:
-    """Limits in m/s and rad/s, m/s2 and rad/s2, m/s3 and rad/s3.
+    """Limits of velocity (m/s, rad/s), acceleration (m/s2, rad/s2) and jerk (m/s3, rad/s3).
 
     A linear or angular limit takes precedence over the limit for both kinds.
     """

@@ -39,7 +39,7 @@ class MecanumParameters(GzDriveParameters):
 
 
 class GzMecanum(PlanarDrive[MecanumParameters]):
-    """``gz-sim-mecanum-drive-system``."""
+    """The substitute for ``gz-sim-mecanum-drive-system``."""
 
     PARAMETERS = MecanumParameters
     CARRIED = ("_place",)
@@ -107,11 +107,11 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
                 motor.target = speed
 
     def _states(self, derivative: int) -> list[float]:
-        """Return the positions of the four wheels in rad, or their velocities in rad/s."""
+        """Return the angles in rad (derivative 0) or velocities in rad/s (1) of the four wheels."""
         return [self.simulation.joint_state(joint)[derivative] for joint in self._wheels]
 
     def _rolled(self, turned: list[float]) -> tuple[float, float, float]:
-        """Return the displacement (or velocity) of the robot for a rotation (or velocity) of its wheels."""
+        """Return the robot's displacement or velocity that corresponds to the wheels' angles or velocities."""
         return self._drive_train.motion(*turned)
 
     def _move(self) -> None:

@@ -1,8 +1,8 @@
 """Multicopters: ``gz-sim-multicopter-motor-model-system`` and ``gz-sim-multicopter-control-system``.
 
-The thrust of a rotor acts along the z axis of its link and grows with the square of its speed. The rotor turns its
-parent link the opposite way, and has drag in the air that it moves through. The controller tilts the model so that it
-reaches the commanded velocity.
+The thrust of a rotor acts along the z axis of its link and grows with the square of its speed. The rotor exerts a
+reaction torque on its parent link, and has drag in the air through which it moves. The controller tilts the model so
+that it reaches the commanded velocity.
 
 Source: gz-sim (parameters, topics, formulas); T. Lee, M. Leok, N. H. McClamroch, "Geometric tracking control of a
 quadrotor UAV on SE(3)", 2010.
@@ -138,11 +138,14 @@ class ControlParameters:
 
 
 class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
-    """``gz-sim-multicopter-control-system``: flies at a commanded velocity, and hovers when the sender is lost."""
+    """The substitute for ``gz-sim-multicopter-control-system``: flies at a commanded velocity.
+
+    The model hovers when the publisher of the commands disappears.
+    """
 
     PARAMETERS = ControlParameters
     IGNORED = (
-        "rotorConfiguration",  # read below
+        "rotorConfiguration",  # read by _find_rotors
         "linearVelocityNoiseMean",
         "linearVelocityNoiseStdDev",
         "angularVelocityNoiseMean",
@@ -154,7 +157,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         """Find the rotors, and subscribe to the commands.
 
         Raises:
-            LinkwrightError: SIM133, SIM134, there is no such link or joint; SIM160, its rotors cannot hold the model.
+            LinkwrightError: SIM133, SIM134, there is no such link or joint; SIM160, the rotors cannot hold the model.
         """
         parameters, element = self.parameters, self.place.element
         self._body = self.link(parameters.com_link_name)
@@ -177,7 +180,10 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         self._is_enabled = True
 
     def _find_rotors(self, element: Element | None) -> None:
-        """Find the rotors, and compute the rotor speeds that produce a given torque and thrust."""
+        """Find the rotors, and compute the gains and the matrix for their speeds.
+
+        The matrix gives the squared speeds of the rotors for an angular acceleration and a thrust.
+        """
         simulation = self.simulation
         configuration = None if element is None else element.first("rotorConfiguration")
         rotors = [] if configuration is None else list(configuration.elements("rotor"))
@@ -241,7 +247,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         self._wanted = (linear, min(max(float(twist.angular.z), -angular), angular))
 
     def _rest(self) -> bool:
-        """Command hovering."""
+        """Command hovering if there is a command; return whether a motion was commanded."""
         before = self._wanted
         if before is None:
             return False
@@ -262,7 +268,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
                     motors[joint].wanted = float(speed)
 
     def _motors(self) -> dict[str, GzMulticopterMotor]:
-        """Return the motors of the model, by joint."""
+        """Return the motors of the model that have started, by joint."""
         if len(self._rotors) < len(self._joints):  # the other motors have not started yet
             found = self._environment.plugins(self.place.path.partition(SEPARATOR)[0])
             motors = [
@@ -272,7 +278,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         return self._rotors
 
     def _speeds(self, linear: Array, yaw_rate: float) -> Array:
-        """Return the current target speed of each rotor, in rad/s."""
+        """Return the target speed of each rotor, in rad/s, for a commanded velocity."""
         parameters, simulation = self.parameters, self.simulation
         turn = rotation_matrix(simulation.link_pose(self._body)[3:])
         velocity, rates = simulation.link_velocity(self._body)
@@ -291,7 +297,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
 
 
 def _attitude(turn: Array, acceleration: Array) -> Array:
-    """Return the axes of a body whose thrust produces an acceleration, with the heading unchanged."""
+    """Return the rotation matrix whose z axis is opposite to an acceleration, keeping the heading."""
     up = -acceleration / max(float(np.linalg.norm(acceleration)), 1e-9)
     ahead = next((item for item in turn.T if np.sum(np.cross(item, up) ** 2) >= _PARALLEL), turn[:, 0])
     left = np.cross(up, ahead)

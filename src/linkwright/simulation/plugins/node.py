@@ -1,4 +1,4 @@
-"""The node of a plugin."""
+"""The part of the ROS graph that belongs to a plugin."""
 
 from __future__ import annotations
 
@@ -56,13 +56,13 @@ class PluginNode(SteppedNode):
         self._names: list[str] = []
 
     def publisher(self, msg_type: Any, topic: str, qos: QoSProfile | int = 10, *, usual: str = "") -> Output:
-        """Create a topic for publishing.
+        """Create a publisher for a topic.
 
         Args:
-            msg_type: the class of its messages, or the name of the type.
+            msg_type: the class of the messages, or the name of the type.
             topic: a relative, absolute or private name. Characters that gz allows and ROS does not are replaced.
             qos: the QoS profile; a number is a depth.
-            usual: for topics of gz, the usual name on robots. The topic is published under this name, too, if the
+            usual: for topics of gz, the usual name on robots. The topic is also published under this name if the
                 simulation has this option enabled and no other plugin uses the name.
         """
         return self._publish_as(msg_type, self._both(topic, usual), qos)
@@ -91,7 +91,7 @@ class PluginNode(SteppedNode):
             self._usual.difference_update(self._names)
 
     def _listen(self, topic: str, listen: Callable[[str], Endpoint]) -> None:
-        """Subscribe to a topic, or to its hidden name while a bridge offers it under another type."""
+        """Subscribe to a topic, and switch to its hidden name if a bridge offers it under another type."""
         bridged = self._bridged
         if bridged is None or bridged.has(topic):
             listen(topic if bridged is None else hidden_gz_topic(topic))

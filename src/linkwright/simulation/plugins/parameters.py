@@ -42,7 +42,10 @@ class NoParameters:
 
 
 def parameter(default: Any = MISSING, *, aliases: Sequence[str] = ()) -> Any:
-    """Declare a parameter with its default, if it has one, and its names in older simulators."""
+    """Return the field of a parameter, with its default and its names in older simulators.
+
+    A parameter without a default is required.
+    """
     return field(default=default, metadata={_ALIASES: tuple(aliases)})
 
 
@@ -97,7 +100,10 @@ def _types(table: Hashable) -> Mapping[str, Any]:
 
 
 def _read(known: Field[Any], kind: Any, written: list[Element], findings: list[Diagnostic]) -> Any:
-    """Read the value of a parameter; return None if there is no valid one."""
+    """Return the value of a parameter, or None if there is no valid value.
+
+    A finding is added for each invalid value.
+    """
     many = kind in (tuple[str, ...], tuple[float, ...])
     convert = _CONVERTERS[str if kind == tuple[str, ...] else float if kind == tuple[float, ...] else kind]
     values = []

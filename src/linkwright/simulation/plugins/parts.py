@@ -59,10 +59,10 @@ def parts_of(simulation: Simulation, model: Model, path: str) -> Iterator[Part]:
 
 
 def _frame_of(simulation: Simulation, model: Model, path: str) -> Pose:
-    """Return a function for the pose of a model's frame in the world."""
+    """Return a function that returns the current pose of a model's frame in the world."""
     top, _, inside = path.partition(SEPARATOR)
     whole = simulation.scene.models[top]
-    if not whole.structure.links:  # none of its parts move
+    if not whole.structure.links:  # no part of the model moves
         return partial(_same, whole.pose)
     if not inside or not model.links:
         return lambda: simulation.model_pose(top)
@@ -71,13 +71,16 @@ def _frame_of(simulation: Simulation, model: Model, path: str) -> Pose:
 
 
 def _moving_with(simulation: Simulation, link: str, place: Transform) -> Pose:
-    """Return a function for the pose in the world of a frame that is fixed to a link."""
+    """Return a function that returns the current pose in the world of a frame that is fixed to a link.
+
+    `place` is the pose of the link in this frame.
+    """
     back = invert(place)
     return lambda: compose(simulation.link_pose(link), back)
 
 
 def _parts(simulation: Simulation, model: Model, path: str, frames: Frames, place: Pose) -> Iterator[Part]:
-    """Yield the parts of a model whose frame has a given pose in the world."""
+    """Yield the parts of a model; `place` returns the pose of the model's frame in the world."""
     for link in model.links:
         name = f"{path}{SEPARATOR}{link.name}"
         yield Part(PartKind.LINK, name, path, partial(_between, place, partial(simulation.link_pose, name)))

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, kw_only=True)
 class Gains:
-    """Gains of a PID controller, and bounds of its integral term and of its command."""
+    """The gains of a PID controller, and the bounds of its integral term and of its command."""
 
     p: float
     i: float
@@ -31,7 +31,7 @@ class Pid:
         self._before: float | None = None
 
     def force(self, error: float, seconds: float) -> float:
-        """Return the force in N m (N) for an error, `seconds` after the last call."""
+        """Return the force in N m (N) for an error; `seconds` is the time since the last call."""
         gains = self._gains
         self._sum = _bounded(self._sum + gains.i * error * seconds, gains.i_min, gains.i_max)
         change = 0.0 if self._before is None else (error - self._before) / seconds

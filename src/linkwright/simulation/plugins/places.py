@@ -1,4 +1,4 @@
-"""Collect the plugins and sensors of a model or world, each with its place in it."""
+"""Collects the plugins and sensors of a model or world, each with its place."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from linkwright.simulation.plugins.registry import needs_nothing
 
 
 def world_plugins(world: World, systems: Sequence[Plugin] = ()) -> Iterator[PluginPlace]:
-    """Yield the plugins of a world itself.
+    """Yield the plugins that belong to a world and not to one of its models.
 
     Args:
         world: the world, as it was read.
-        systems: the plugins to use for a world that does not name any.
+        systems: the plugins of a world that does not declare any.
     """
     for plugin in world.plugins or systems:
         yield PluginPlace(plugin.name or plugin.filename, plugin, world, None, "", None)
 
 
 def model_plugins(world: World, model: Model, path: str) -> Iterator[PluginPlace]:
-    """Yield the plugins of a model and of its sensors, and its sensors without plugins.
+    """Yield the plugins of a model and of its sensors, and the sensors that no plugin publishes.
 
     The plugins and sensors of nested models follow.
 
@@ -47,7 +47,7 @@ def _of_model(world: World, model: Model, path: str, frames: Frames) -> Iterator
         plugins = placed.sensor.plugins
         for plugin in plugins:
             yield PluginPlace(plugin.name or placed.sensor.name, plugin, world, model, path, placed)
-        if all(needs_nothing(plugin.filename) for plugin in plugins):  # plugins in sensors include the systems of gz
+        if all(needs_nothing(plugin.filename) for plugin in plugins):  # true if a sensor has only systems of gz
             yield PluginPlace(placed.sensor.name, None, world, model, path, placed)
     for inner in model.models:
         yield from _of_model(world, inner, f"{path}{SEPARATOR}{inner.name}", frames.inside(inner.name))

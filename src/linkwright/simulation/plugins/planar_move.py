@@ -1,7 +1,7 @@
 """Motion in a plane: ``libgazebo_ros_planar_move.so``, including its names in ROS 1.
 
-Source: gazebo_ros_pkgs (parameters, topics, defaults). Unlike there, the velocity is set after each step. Wheels with
-grip therefore hardly slow the robot down, and it still falls and tilts freely.
+Source: gazebo_ros_pkgs (parameters, topics, defaults). Unlike in gazebo_ros_pkgs, the velocity is set after each step.
+Wheels with grip therefore hardly slow the robot down, and the robot still falls and tilts freely.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class PlanarMoveParameters:
 
 
 class PlanarDrive(SimulatedPlugin[P], Generic[P]):
-    """Sets the velocity of a model in its horizontal plane."""
+    """A plugin that sets the velocity of a model in its horizontal plane."""
 
     def require_free_model(self) -> None:
         """Check that the model can move, and keep it awake.
@@ -56,7 +56,10 @@ class PlanarDrive(SimulatedPlugin[P], Generic[P]):
         self.simulation.keep_awake(self.first_link)
 
     def hold(self, forward: float, sideways: float, yaw_rate: float) -> None:
-        """Set the planar velocities in m/s and rad/s for the next step; the other components remain."""
+        """Set the planar velocities in m/s and rad/s for the next step.
+
+        The vertical velocity and the roll and pitch rates remain unchanged.
+        """
         yaw = yaw_of(self.simulation.model_pose(self.place.path))
         linear, angular = self.simulation.link_velocity(self.first_link)
         along = (forward * cos(yaw) - sideways * sin(yaw), forward * sin(yaw) + sideways * cos(yaw), float(linear[2]))
@@ -64,14 +67,14 @@ class PlanarDrive(SimulatedPlugin[P], Generic[P]):
 
 
 class PlanarMove(PlanarDrive[PlanarMoveParameters]):
-    """``libgazebo_ros_planar_move.so``."""
+    """The substitute for ``libgazebo_ros_planar_move.so``."""
 
     PARAMETERS = PlanarMoveParameters
     IGNORED = ("update_rate",)
     CARRIED = ("_wanted",)
 
     def start(self) -> None:
-        """Subscribe to the commands, and hold the velocity.
+        """Subscribe to the commands, and create the odometry topics.
 
         Raises:
             LinkwrightError: SIM160, the model is fixed to the world.

@@ -22,8 +22,8 @@ Create costly messages only if ``output.is_wanted``.
 All methods are called in the simulation's thread: `start` after the model is added, functions passed to `every` at
 their simulated times, callbacks of topics and services between two chunks of time, `reset` after time restarts, and
 `stop` before the model is removed. A model whose file was saved is replaced at its current pose, and `resume` takes
-over the state that lasts. An exception, wherever it is raised, is logged and ends that plugin or sensor; the others
-continue (`calls`).
+over the state of the previous plugin. An exception in any of these methods is logged and ends only that plugin or
+sensor (`calls`).
 """
 
 from __future__ import annotations
@@ -58,11 +58,11 @@ class PlacedSensor:
     """A sensor of a model.
 
     Attributes:
-        name: the name with the models and the link or joint that contain it: ``robot::head::camera``.
+        name: the name with the models and the link or joint that contain the sensor: ``robot::head::camera``.
         sensor: the parsed sensor.
-        link: the link that carries it, named as in the simulation; for a sensor in a joint, the child link.
-        joint: the joint that contains it; empty for a sensor of a link.
-        pose: its pose in the frame of `link`.
+        link: the link that carries the sensor, named as in the simulation; for a sensor in a joint, the child link.
+        joint: the joint that contains the sensor; empty for a sensor of a link.
+        pose: the pose of the sensor in the frame of `link`.
     """
 
     name: str
@@ -74,7 +74,7 @@ class PlacedSensor:
 
 @dataclass(frozen=True, slots=True)
 class PluginPlace:
-    """The place of a plugin in a model, and its element.
+    """The place of a plugin, or of a sensor without a plugin, in a model or world.
 
     Attributes:
         name: the name of the plugin, or of the sensor without a plugin.
@@ -82,7 +82,7 @@ class PluginPlace:
         world: the world, as it was read.
         model: the model that contains the plugin; None for a plugin of the world.
         path: the name of that model, ``robot`` or ``robot::arm``; empty for the world.
-        sensor: the sensor that contains the plugin, or that has none; None for other plugins.
+        sensor: the sensor that contains the plugin, or the sensor without a plugin; None for other plugins.
     """
 
     name: str
@@ -105,7 +105,7 @@ class Environment(Protocol):
 
     @property
     def simulation(self) -> Simulation:
-        """The simulation."""
+        """The simulation in which the plugins run."""
 
     @property
     def gazebo_mistakes(self) -> bool:
@@ -113,7 +113,7 @@ class Environment(Protocol):
 
     @property
     def left(self) -> dict[str, Any]:
-        """Values that plugins store, under names of their choice, for their successors in a changed model."""
+        """The values that plugins store by name for their successors when a model is changed."""
 
     def random(self, name: str) -> np.random.Generator:
         """Return a random number generator for a name, determined only by the name and the seed."""
@@ -164,7 +164,7 @@ class SimulatedPlugin(Generic[P]):
     def resume(self, before: SimulatedPlugin[P]) -> None:
         """Take over the state of a predecessor with the same parameters.
 
-        Called after `start` when a model was replaced.
+        The simulation calls this after `start` when it has replaced a model.
 
         Args:
             before: the predecessor, which has ended.
@@ -173,17 +173,17 @@ class SimulatedPlugin(Generic[P]):
             setattr(self, name, getattr(before, name))
 
     def is_like(self, other: SimulatedPlugin[Any]) -> bool:
-        """Return whether another plugin has the same place in its model and the same parameters."""
+        """Return whether another plugin has the same class, place in its model and parameters."""
         one, two = self.place, other.place
         same_place = (one.path, one.name) == (two.path, two.name)
         return type(self) is type(other) and same_place and bool(self.parameters == other.parameters)
 
     def stop(self) -> None:
-        """Clean up; the node and the functions registered with `every` are removed automatically."""
+        """Clean up resources other than the node and the functions registered with `every`."""
 
     @property
     def left(self) -> dict[str, Any]:
-        """Values that predecessors stored under names of their choice before the model was changed."""
+        """The values that predecessors stored by name before the model was changed."""
         return self._environment.left
 
     # --- methods for plugins to call ----------------------------------------------------------------------------------
@@ -196,7 +196,10 @@ class SimulatedPlugin(Generic[P]):
 
     @property
     def random(self) -> np.random.Generator:
-        """The plugin's own random number generator: store it, and get it again in `reset`."""
+        """A new random number generator for this plugin, determined by its name and the seed.
+
+        Store the generator, and get a new one in `reset`, which repeats the same numbers.
+        """
         owner = self.sensor.name if self.place.sensor is not None else f"{self.place.path}::{self.place.name}"
         return self._environment.random(owner)
 
@@ -206,11 +209,11 @@ class SimulatedPlugin(Generic[P]):
         self._tasks.append(self.simulation.call_every(period, partial(self.node.calls.call, function)))
 
     def stamp(self) -> Time:
-        """Return the simulated time, for headers."""
+        """Return the current simulated time as a stamp for message headers."""
         return Time.from_nanoseconds(self.simulation.time)
 
     def link(self, name: str) -> str:
-        """Return the name in the simulation of a link of the plugin's model.
+        """Return the full name of a link of the plugin's model, as used in the simulation.
 
         Raises:
             LinkwrightError: SIM133, there is no such link.
@@ -218,7 +221,7 @@ class SimulatedPlugin(Generic[P]):
         return self._found(name, self.simulation.scene.bodies, "SIM133")
 
     def joint(self, name: str) -> str:
-        """Return the name in the simulation of a movable joint of the plugin's model.
+        """Return the full name of a movable joint of the plugin's model, as used in the simulation.
 
         Raises:
             LinkwrightError: SIM134, there is no such joint.
@@ -227,7 +230,7 @@ class SimulatedPlugin(Generic[P]):
 
     @property
     def first_link(self) -> str:
-        """The name in the simulation of the first link of the plugin's model, with which the model moves."""
+        """The full name of the first link of the plugin's top-level model, with which the model moves."""
         top, _, _ = self.place.path.partition(SEPARATOR)
         return self.simulation.scene.models[top].structure.links[0].link.name
 
@@ -239,14 +242,21 @@ class SimulatedPlugin(Generic[P]):
         return LinkwrightError(Diagnostic("SIM160", message, element.span(), source=element.source))
 
     def close(self, on_error: Callable[[Exception], object]) -> None:
-        """Call `stop`, and remove everything that the plugin created; report an error of `stop`."""
+        """Call `stop`, and remove the plugin's node and functions.
+
+        An error in `stop` is passed to `on_error`.
+        """
         for task in self._tasks:
             task.cancelled = True
         self.node.calls.close(self.stop, on_error)
         self.node.close()
 
     def _found(self, name: str, known: Collection[str], code: str) -> str:
-        """Find a name as written, in the model, or in one of the nested models."""
+        """Return the full name in `known` for a name that may omit the model or nested models.
+
+        Raises:
+            LinkwrightError: the error `code`, there is no such name, or several nested models have it.
+        """
         begin = f"{self.place.path}{SEPARATOR}" if self.place.path else ""
         mine = [name for name in known if name.startswith(begin)]
         for candidate in (f"{begin}{name}", name):

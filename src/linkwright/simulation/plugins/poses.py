@@ -39,12 +39,12 @@ class PoseParameters:
 
 
 class GzPoses(SimulatedPlugin[PoseParameters]):
-    """``gz-sim-pose-publisher-system``."""
+    """The substitute for ``gz-sim-pose-publisher-system``."""
 
     PARAMETERS = PoseParameters
 
     def start(self) -> None:
-        """Find the parts, and create the topics."""
+        """Find the parts to publish, and create the topics of moving and static parts."""
         parameters, model, path = self.parameters, self.place.model, self.place.path
         if model is None:
             return
@@ -61,7 +61,7 @@ class GzPoses(SimulatedPlugin[PoseParameters]):
         self._publish_at(parameters.update_frequency, topic, parts)
 
     def _kinds(self) -> set[PartKind]:
-        """Return the kinds of parts that are published."""
+        """Return the kinds of parts that the parameters select."""
         parameters = self.parameters
         nested = parameters.publish_nested_model_pose
         wanted = {
@@ -93,7 +93,7 @@ class GzPoses(SimulatedPlugin[PoseParameters]):
             output.publish(message)
 
     def _moved_by_joints(self, model: Model) -> set[str]:
-        """Return the links with joints, except the link with which the model's frame moves."""
+        """Return the links of the model's movable joints, except the link with which its frame moves."""
         begin = f"{self.place.path}{SEPARATOR}"
         moving = {
             link

@@ -29,10 +29,10 @@ _FAR = 1e9
 
 
 class ClassicProperties(SimulatedPlugin[NoParameters]):
-    """``libgazebo_ros_properties.so``, a plugin of a world."""
+    """The substitute for ``libgazebo_ros_properties.so``, a plugin of a world."""
 
     def start(self) -> None:
-        """Create the services."""
+        """Create the services that get and set properties."""
         self._entities = Entities(self.simulation)
         for name, callback in (
             ("GetModelProperties", self._model),

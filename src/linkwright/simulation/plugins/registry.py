@@ -1,4 +1,4 @@
-"""Find the classes that simulate plugins and sensors, through entry points.
+"""Finds the classes that simulate plugins and sensors, through entry points.
 
 There are two groups of entry points, in this package and in others. Each entry point names a subclass of
 `linkwright.simulation.plugins.plugin.SimulatedPlugin`:
@@ -60,7 +60,7 @@ def is_of_gz(filename: str) -> bool:
 
 
 def needs_nothing(filename: str) -> bool:
-    """Return whether the simulation itself does the work of a library."""
+    """Return whether the simulation itself does the work of a library, or no library is named."""
     return filename in _NONE or library_name(filename) in _BUILT_IN
 
 
@@ -68,7 +68,7 @@ def plugin_class(library: str) -> PluginClass | None:
     """Return the class that simulates the plugin in a library (`library_name`), or None if there is none.
 
     Raises:
-        LinkwrightError: SIM136, the package that provides it cannot be imported.
+        LinkwrightError: SIM136, the class cannot be imported.
     """
     return _loaded(PLUGINS, library)
 
@@ -77,7 +77,7 @@ def sensor_class(kind: str) -> PluginClass | None:
     """Return the class that simulates a sensor type without a plugin, or None if there is none.
 
     Raises:
-        LinkwrightError: SIM136, the package that provides it cannot be imported.
+        LinkwrightError: SIM136, the class cannot be imported.
     """
     return _loaded(SENSORS, kind)
 

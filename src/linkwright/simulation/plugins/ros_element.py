@@ -1,4 +1,4 @@
-"""``<ros>`` of a plugin of Gazebo classic: node name, namespace, remappings, parameters and QoS.
+"""The element ``<ros>`` of Gazebo classic's plugins: node name, remappings, parameters and QoS.
 
 Source: ``gazebo_ros::Node`` of gazebo_ros_pkgs for ROS 2.
 """
@@ -45,7 +45,7 @@ class NodeDescription:
 
 
 def node_of(name: str, element: Element | None, namespace: str) -> NodeDescription:
-    """Read the description of a plugin's node.
+    """Return the description of a plugin's node, from the element ``<ros>`` if there is one.
 
     Args:
         name: the name of the plugin; characters that a node name cannot contain become underscores.
@@ -78,7 +78,7 @@ def node_of(name: str, element: Element | None, namespace: str) -> NodeDescripti
 
 
 def overridden(profile: QoSProfile, element: Element) -> QoSProfile:
-    """Return a QoS profile with the settings of an element applied; unknown words have no effect."""
+    """Return a copy of a QoS profile with the settings of an element; unknown values have no effect."""
     result = QoSProfile(profile.depth, profile.reliability, profile.durability, profile.history)
     for child in element.elements():
         word = child.text().strip().upper()

@@ -1,9 +1,9 @@
 """Poses of all entities in a world: ``gz-sim-scene-broadcaster-system``.
 
-Source: gz-sim (topics, their order and rates, parameters). Entities have their local names, without those of the models
-that contain them, and poses relative to their parents. As with a bridge, ``frame_id`` stays empty. A tf listener that
-is given these topics ignores such transforms, because otherwise the frames of links would have two parents (decision
-0096).
+Source: gz-sim (topics, their order and rates, parameters). Entities have their local names, without the names of the
+models that contain them, and poses relative to their parents. As with a bridge, ``frame_id`` stays empty. A tf listener
+that receives these topics ignores such transforms, because otherwise the frames of links would have two parents
+(decision 0096).
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class _Entities:
 
     Attributes:
         names: the names of the entities.
-        poses: constant poses for static entities, and functions that return the pose for the others.
+        poses: a constant pose for each static entity, and a function that returns the pose for each other entity.
     """
 
     names: tuple[str, ...]
@@ -51,13 +51,13 @@ class _Entities:
 
 
 class GzSceneBroadcaster(SimulatedPlugin[SceneParameters]):
-    """``gz-sim-scene-broadcaster-system``."""
+    """The substitute for ``gz-sim-scene-broadcaster-system``."""
 
     PARAMETERS = SceneParameters
     IGNORED = ("state_hertz",)
 
     def start(self) -> None:
-        """Create the topics of the world."""
+        """Create the topic of all poses and the topic of the poses of moving entities."""
         begin = f"/world/{self.place.world.name}"
         self._revision = -1
         self._all = self._dynamic = _Entities((), ())
@@ -77,7 +77,7 @@ class GzSceneBroadcaster(SimulatedPlugin[SceneParameters]):
         output.publish(TFMessage(batch=TransformBatch(("",) * count, entities.names, self.simulation.time, poses)))
 
     def _collect(self) -> None:
-        """Find the entities of the current world; static ones get constant poses."""
+        """Update the lists of all and of moving entities; static entities get constant poses."""
         self.simulation.refresh()
         self._revision = self.simulation.revision
         models = self.simulation.scene.models.values()

@@ -35,7 +35,7 @@ class SkidSteerParameters:
     covariance_yaw: float = 1e-2
 
     def as_diff_drive(self) -> ClassicParameters:
-        """Return the equivalent parameters of the differential drive."""
+        """Return the parameters of the equivalent differential drive."""
         return ClassicParameters(
             left_joint=(self.left_front_joint, self.left_rear_joint),
             right_joint=(self.right_front_joint, self.right_rear_joint),
@@ -57,7 +57,7 @@ class SkidSteerParameters:
 
 
 class SkidSteer(ClassicDiffDrive):
-    """``libgazebo_ros_skid_steer_drive.so``."""
+    """The substitute for ``libgazebo_ros_skid_steer_drive.so``."""
 
     PARAMETERS = SkidSteerParameters
 

@@ -1,7 +1,7 @@
 """Topics and services for the states of models and links: ``libgazebo_ros_state.so``.
 
 Source: gazebo_ros_pkgs for ROS 2 (topics, services, the rate). The simulator itself answers ``/get_entity_state`` and
-``/set_entity_state``; this plugin also offers them in its own namespace.
+``/set_entity_state``; this plugin also offers these services in its own namespace.
 """
 
 from __future__ import annotations
@@ -24,17 +24,17 @@ class StateParameters:
 
 
 class ClassicState(SimulatedPlugin[StateParameters]):
-    """``libgazebo_ros_state.so``, a plugin of a world."""
+    """The substitute for ``libgazebo_ros_state.so``, a plugin of a world."""
 
     PARAMETERS = StateParameters
 
     def start(self) -> None:
-        """Create the topics and services."""
+        """Create the topics and services for the states of models, links and joints."""
         node = self.node
         self._entities = Entities(self.simulation)
         self._models = node.publisher("gazebo_msgs/msg/ModelStates", "model_states", 1)
         self._links = node.publisher("gazebo_msgs/msg/LinkStates", "link_states", 1)
-        if node.name.count("/") > 1:  # without a namespace, the simulator offers the services
+        if node.name.count("/") > 1:  # Without a namespace, these are the simulator's own services.
             node.service("gazebo_msgs/srv/GetEntityState", "get_entity_state", self._get)
             node.service("gazebo_msgs/srv/SetEntityState", "set_entity_state", self._set)
         node.service("gazebo_msgs/srv/SetModelConfiguration", "set_joint_positions", self._set_joints)

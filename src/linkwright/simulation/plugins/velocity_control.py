@@ -1,6 +1,6 @@
 """A model that moves with a commanded velocity: ``gz-sim-velocity-control-system``.
 
-Source: gz-sim (parameters, topic; velocities are in the axes of the model, and hold until the next message).
+Source: gz-sim (parameters, topic; velocities are in the axes of the model, and apply until the next message).
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ class VelocityControlParameters:
 
 
 class GzVelocityControl(PlanarDrive[VelocityControlParameters]):
-    """``gz-sim-velocity-control-system`` for models; individual links are not controlled."""
+    """The substitute for ``gz-sim-velocity-control-system``, which controls models but not single links."""
 
     PARAMETERS = VelocityControlParameters
     IGNORED = ("link_name",)
     CARRIED = ("_wanted",)
 
     def start(self) -> None:
-        """Subscribe to the commands.
+        """Subscribe to the velocity commands.
 
         Raises:
             LinkwrightError: SIM160, the model is fixed to the world.

@@ -1,1 +1,1 @@
-"""Images of a simulated world, from OpenGL in the system's graphics library, or from ray casting if there is none."""
+"""Rendering of a simulated world, by OpenGL or, if no OpenGL library is available, by ray casting."""

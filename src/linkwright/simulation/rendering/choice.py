@@ -1,4 +1,4 @@
-"""Choose the first renderer that works on this machine."""
+"""Selects the first renderer that works on this machine."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ def make_renderer(simulation: Simulation, way: str = "") -> Renderer:
 
     Args:
         simulation: the simulation of the world.
-        way: one of `WAYS`; by default the one that the environment variable ``MUJOCO_GL`` names, or else the first that
-            works on this machine.
+        way: one of `WAYS`; by default the backend that the environment variable ``MUJOCO_GL`` names, or else the first
+            that works on this machine.
 
     Raises:
         Exception: of any class, if the requested way does not work on this machine.

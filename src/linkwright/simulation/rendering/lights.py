@@ -24,9 +24,9 @@ class PlacedLight:
 
     Attributes:
         light: the parsed light.
-        position: its position in m, shape (3,).
-        direction: the unit vector of its direction, shape (3,).
-        colour: red, green and blue from 0 to 1, scaled by its intensity, shape (3,).
+        position: the position of the light in m, shape (3,).
+        direction: the unit vector of the light's direction, shape (3,).
+        colour: red, green and blue from 0 to 1, scaled by the light's intensity, shape (3,).
     """
 
     light: Light
@@ -36,10 +36,10 @@ class PlacedLight:
 
 
 def lights_of(simulation: Simulation, forwards: Array) -> list[PlacedLight]:
-    """Return the lights of a world and of its links, at their current poses; a sun if there are none.
+    """Return the lights of a world and its links at their current poses; a sun if there are none.
 
-    A faint light at the camera, which looks along `forwards`, replaces indirect light. Without it, everything in the
-    shade would have the same colour.
+    The first light is a faint light at the camera, which looks along `forwards`. It replaces indirect light: without
+    it, everything in the shade would have the same colour.
     """
     lights = [*_of_world(simulation), *_of_links(simulation)]
     if not lights:

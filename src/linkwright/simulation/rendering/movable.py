@@ -1,4 +1,4 @@
-"""Movable geoms: which of them are at rest, and which of the others are visible in an image."""
+"""Movable geoms: which geoms are at rest, and which moving geoms are visible in an image."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ class View:
 
     Attributes:
         optics: the projection of the camera.
-        origin: its position in m, shape (3,).
+        origin: the position of the camera in m, shape (3,).
         axes: right, down and forwards, as columns.
-        rays: the rays of its pixels, scaled to length 1 along the optical axis, shape (n, 3), float32.
+        rays: the rays of the pixels, scaled to length 1 along the optical axis, shape (n, 3), float32.
     """
 
     optics: Optics
@@ -41,7 +41,7 @@ class View:
 
 
 class MovableGeoms:
-    """Movable geoms, by their indices in MuJoCo's model.
+    """Movable geoms, identified by their indices in MuJoCo's model.
 
     Args:
         simulation: the simulation of the world.
@@ -65,13 +65,13 @@ class MovableGeoms:
         self._hollow: Any = np.zeros(count, dtype=bool)
 
     def settle(self, origin: Array) -> bool:
-        """Update `resting` for a camera; return whether it has changed.
+        """Update `resting` for a camera; return whether `resting` has changed.
 
-        A box that contains a camera never rests: other cameras see it, but this one does not.
+        A box that contains a camera is never resting: this camera does not see the box, but other cameras do.
         """
         data, now = self._simulation.data, self._simulation.time
         poses = np.concatenate([data.geom_xpos[self._geoms], data.geom_xmat[self._geoms]], axis=1)
-        moved = (poses != self._poses).any(axis=1) | (self._since > now)  # simulated time may have restarted
+        moved = (poses != self._poses).any(axis=1) | (self._since > now)  # or time has restarted
         self._poses = poses
         self._since[moved] = now
         self._hollow |= self._contain_point(origin)
@@ -83,10 +83,10 @@ class MovableGeoms:
         return True
 
     def in_view(self, view: View) -> dict[int, Array]:
-        """Return the moving geoms in an image, except geoms whose bounding box contains the camera.
+        """Return the moving geoms in an image, except boxes that contain the camera.
 
         Returns:
-            For each geom the corners of its bounding box: to the right, down and ahead in m, shape (8, 3).
+            For each geom, the corners of its bounding box: to the right, down and ahead in m, shape (8, 3).
         """
         data, chosen = self._simulation.data, np.flatnonzero(~(self._rests | self._contain_point(view.origin)))
         geoms = self._geoms[chosen]
@@ -99,7 +99,7 @@ class MovableGeoms:
         return {int(geoms[each]): placed[each] for each in np.flatnonzero(~outside)}
 
     def _contain_point(self, origin: Array) -> Any:
-        """Return whether the bounding boxes of the geoms contain a point: shape (geoms,)."""
+        """Return whether each geom is a box that contains a point, shape (geoms,)."""
         model, data, geoms = self._simulation.model, self._simulation.data, self._geoms
         inside = np.einsum("ijk,ij->ik", data.geom_xmat[geoms].reshape(-1, 3, 3), data.geom_xpos[geoms] - origin)
         return (np.abs(inside) < model.geom_size[geoms] + _THIN).all(axis=1) & self._is_box
@@ -107,6 +107,8 @@ class MovableGeoms:
 
 def pixels_towards(optics: Optics, boxes: list[Array]) -> Any:
     """Return the indices of the pixels in which bounding boxes may appear; None for all pixels.
+
+    All pixels are returned if there are many boxes, or if a box is too close to the camera.
 
     Args:
         optics: the projection of the camera.
@@ -126,7 +128,7 @@ def pixels_towards(optics: Optics, boxes: list[Array]) -> Any:
 
 
 def _corners(points: Array) -> Array:
-    """Return the corners of the bounding boxes of points, shape (8, 3)."""
+    """Return the corners of the axis-aligned bounding box of points, shape (8, 3)."""
     ends = np.stack([points.min(axis=0), points.max(axis=0)])
     corners: Array = np.array([[ends[x, 0], ends[y, 1], ends[z, 2]] for x in (0, 1) for y in (0, 1) for z in (0, 1)])
     return corners

@@ -1,4 +1,4 @@
-"""Rendering by OpenGL: MuJoCo's classic renderer, offscreen, on EGL or OSMesa.
+"""Rendering by OpenGL, with MuJoCo's classic renderer, offscreen on EGL, OSMesa or CGL.
 
 MuJoCo's defaults (four samples per pixel, shadow maps of 4096 pixels, reflections) take twenty times as long on a CPU
 as the settings used here.
@@ -50,7 +50,7 @@ _SPARE_GEOMS = 100
 
 
 class OpenGlRenderer:
-    """Renders images by OpenGL.
+    """A renderer that uses OpenGL.
 
     The OpenGL context belongs to the thread that created the renderer.
 
@@ -114,7 +114,7 @@ class OpenGlRenderer:
         )
 
     def close(self) -> None:
-        """Free the OpenGL context; call this in the thread that created it."""
+        """Free the OpenGL context; a call in a thread other than the creating one has no effect."""
         if self._thread == threading.get_ident():
             self._gl.make_current()
             if self._draw_context is not None:
@@ -122,7 +122,7 @@ class OpenGlRenderer:
             self._gl.free()
 
     def _renew(self) -> None:
-        """Upload meshes and textures again after models were added or removed."""
+        """Upload meshes and textures again if MuJoCo's model was rebuilt."""
         simulation, mujoco = self._simulation, self._mujoco
         if self._revision == simulation.revision:
             return
@@ -154,7 +154,8 @@ class OpenGlRenderer:
         """Draw spheres, and cylinders in uniform light, with fewer vertices than MuJoCo does.
 
         MuJoCo draws each quad separately, and divides the sides of cylinders into stacks and their ends into rings.
-        These divisions are visible only where a lamp lights their vertices. The image is the same.
+        These divisions are visible only where a point or spot light lights their vertices. In uniform light the
+        image is the same.
         """
         turns, rises = np.linspace(0.0, 2.0 * np.pi, _SLICES + 1), np.linspace(-0.5 * np.pi, 0.5 * np.pi, _STACKS + 1)
         circle = [*zip(np.cos(turns).tolist(), np.sin(turns).tolist(), strict=True)]
@@ -168,7 +169,7 @@ class OpenGlRenderer:
             self._redraw(_CYLINDER, [tube, *ends])
 
     def _redraw(self, shape: int, pieces: list[tuple[int, list[tuple[Vector3, Vector3]]]]) -> None:
-        """Replace a display list of MuJoCo by primitives.
+        """Replace one of MuJoCo's display lists by the given primitives.
 
         Each primitive has a kind, and the normals and positions of its vertices.
         """
@@ -191,7 +192,7 @@ class OpenGlRenderer:
     def _update(self, hole: Optics, pose: Transform) -> None:
         simulation, mujoco = self._simulation, self._mujoco
         model, axes = simulation.model, axes_of(pose)
-        model.vis.map.zfar = hole.far  # zfar limits the extent of infinite planes
+        model.vis.map.zfar = hole.far  # MuJoCo draws infinite planes up to zfar.
         groups = model.geom_group.copy()
         model.geom_group[_outside_image(simulation, hole, np.array(pose[:3]), axes)] = COLLISION_GROUP
         catches = mujoco.mjtCatBit.mjCAT_ALL.value
@@ -214,9 +215,9 @@ class OpenGlRenderer:
             camera.frustum_width = hole.width / 2 * scale
 
     def _flatten_planes(self, hole: Optics, origin: Array) -> None:
-        """Draw infinite planes, seen from above, as the tops of boxes: MuJoCo's planes have 40 000 squares each.
+        """Draw infinite planes without textures, if seen from above, as the tops of boxes.
 
-        This is done for nonuniform light and for textures.
+        MuJoCo draws 40 000 squares for each plane, which only nonuniform light and textures require.
         """
         kinds, data, left = self._mujoco.mjtGeom, self._simulation.data, len(self._endless)
         for geom in self._scene.geoms[: self._scene.ngeom]:
@@ -238,7 +239,7 @@ class OpenGlRenderer:
         ambient = np.array(self._simulation.world.scene.ambient[:3])
         for light, placed in zip(scene.lights, lights[:_LIGHTS], strict=False):
             description = placed.light
-            directional = description.type == "directional"  # point lights are spot lights in all directions
+            directional = description.type == "directional"  # A point light is a spot light in all directions.
             light.type = (kinds.mjLIGHT_DIRECTIONAL if directional else kinds.mjLIGHT_SPOT).value
             light.pos[:], light.dir[:] = placed.position, placed.direction
             light.attenuation[:] = (
@@ -277,7 +278,7 @@ class OpenGlRenderer:
         if colour is not None:
             background = np.clip(np.array(self._simulation.world.scene.background[:3]), 0, 1) * 255
             for channel, shade in enumerate(np.round(background).astype(np.uint8)):
-                np.copyto(colour[:, :, channel], shade, where=nothing)  # a tenth of the time of copying all three
+                np.copyto(colour[:, :, channel], shade, where=nothing)  # a tenth of the time of copying all channels
             colour = np.ascontiguousarray(colour[::-1])
         if Channels.DEPTH not in channels:
             return colour, None
@@ -319,15 +320,15 @@ class OpenGlRenderer:
 
 
 def _outside_image(simulation: Simulation, hole: Optics, origin: Array, axes: Array) -> Any:
-    """Return which geoms are outside the image, shape (geoms,).
+    """Return whether each geom is outside the image, shape (geoms,).
 
-    OpenGL would process each of their vertices.
+    OpenGL would process all vertices of these geoms.
     """
     normals, places = hole.bounds
     reach = simulation.model.geom_rbound * (1 + _ROUNDING)
     beyond = normals @ axes.T @ (simulation.data.geom_xpos - origin).T
     beyond -= places
-    return (beyond > reach).any(axis=0) & (reach > 0)  # MuJoCo gives infinite geoms a radius of 0
+    return (beyond > reach).any(axis=0) & (reach > 0)  # MuJoCo gives infinite geoms the radius 0.
 
 
 def _is_the_same_everywhere(lights: list[PlacedLight]) -> bool:
@@ -352,7 +353,7 @@ def _context_class(backend: str) -> Any:
 
 
 def _resample_nearest(pixels: Pixels, optics: Optics) -> Pixels:
-    """Resample a pinhole image for a lens with nearest-neighbour interpolation."""
+    """Return a pinhole image as seen through a lens, with nearest-neighbour interpolation."""
     column, row = optics.sources
     column = np.clip(np.round(column).astype(int), 0, optics.pinhole.width - 1)
     row = np.clip(np.round(row).astype(int), 0, optics.pinhole.height - 1)
@@ -361,7 +362,7 @@ def _resample_nearest(pixels: Pixels, optics: Optics) -> Pixels:
 
 
 def _resample_interpolated(pixels: Pixels, optics: Optics) -> Pixels:
-    """Resample the colours of a pinhole image for a lens with interpolation."""
+    """Return the colours of a pinhole image as seen through a lens, with bilinear interpolation."""
     column = np.clip(optics.sources[0], 0, optics.pinhole.width - 1.001)
     row = np.clip(optics.sources[1], 0, optics.pinhole.height - 1.001)
     left, top = column.astype(int), row.astype(int)

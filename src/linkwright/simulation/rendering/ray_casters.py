@@ -22,8 +22,8 @@ class Hits:
     """The first hits of rays.
 
     Attributes:
-        distances: in multiples of the ray's length, inf for no hit: shape (n,), float32.
-        geoms: the indices in MuJoCo's model, -1 for no hit: shape (n,), int32.
+        distances: the distances in multiples of the ray's length, inf for no hit: shape (n,), float32.
+        geoms: the indices of the geoms in MuJoCo's model, -1 for no hit: shape (n,), int32.
         normals: unit normals of the surface, facing either side: shape (n, 3), float32; None if not requested.
     """
 
@@ -38,7 +38,7 @@ class Caster(Protocol):
     way: Phrase
 
     def cast(self, view: View, *, normals: bool) -> Hits:
-        """Cast the rays of an image into the current world, starting at the camera's near clip plane.
+        """Cast the rays of an image into the current world, from the camera's near clip plane on.
 
         Args:
             view: the view of the image.
@@ -58,8 +58,8 @@ class MujocoCaster:
         self._groups[VISUAL_GROUP] = 1
 
     def cast(self, view: View, *, normals: bool) -> Hits:
-        """Cast the rays of an image."""
-        del normals  # MuJoCo returns normals in any case
+        """Cast the rays of an image with MuJoCo."""
+        del normals  # MuJoCo always returns normals.
         origin, rays, start = view.origin, view.rays, view.optics.near
         simulation = self._simulation
         simulation.refresh()
@@ -79,7 +79,7 @@ class MujocoCaster:
         return Hits(reached.astype(np.float32), geoms, sides.astype(np.float32))
 
     def _beyond(self, origin: Array, ray: Array, length: float, start: float) -> tuple[int, float, Array]:
-        """Return the first visible hit of one ray: the geom, the distance in m, and the normal."""
+        """Return the first hit of one ray beyond the near clip plane: geom, distance in m and normal."""
         model, data, geom, normal = self._simulation.model, self._simulation.data, np.zeros(1, np.int32), np.zeros(3)
         begin, along = origin + start * ray, ray / length
         further = self._mujoco.mj_ray(model, data, begin, along, self._groups, 1, -1, geom, normal)
@@ -109,10 +109,10 @@ class _Triangles:
         self._normals = across / np.maximum(np.linalg.norm(across, axis=1), 1e-20)[:, None].astype(np.float32)
 
     def cast_into(self, hits: Hits, origins: Any, rays: Any, start: float, numbers: Any = None) -> None:
-        """Record hits of rays from `start` on that are nearer than the hits recorded so far.
+        """Update `hits` with the hits that are nearer than the recorded ones.
 
         Args:
-            hits: the hits so far.
+            hits: the hits recorded so far.
             origins: the origin of each ray.
             rays: the direction of each ray.
             start: the distance from the camera to the origin along the ray.
@@ -133,7 +133,7 @@ class _Triangles:
 
 
 class EmbreeCaster:
-    """Ray casting by Embree against triangles; the tree of all static geoms is reused.
+    """Ray casting by Embree against triangles, with one tree that is reused for all static geoms.
 
     Raises:
         ImportError: embreex is not installed.
@@ -155,7 +155,7 @@ class EmbreeCaster:
         self._planes: list[int] = []
 
     def cast(self, view: View, *, normals: bool) -> Hits:
-        """Cast the rays of an image."""
+        """Cast the rays of an image with Embree."""
         origin, rays, start = view.origin, view.rays, view.optics.near
         simulation = self._simulation
         simulation.refresh()
@@ -201,9 +201,9 @@ class EmbreeCaster:
         self._places, self._sizes = self._fixed_places(), self._simulation.model.geom_size.copy()
 
     def _release_changed(self) -> None:
-        """Move changed geoms out of the static tree.
+        """Move geoms whose pose or size has changed out of the static tree.
 
-        This happens when a data set is generated, which has a different scene for each image.
+        Static geoms change when a data set is generated, because each of its images shows a different scene.
         """
         model = self._simulation.model
         still = np.array(list(self._fixed), dtype=np.int64)
@@ -227,7 +227,7 @@ class EmbreeCaster:
         return np.concatenate([data.geom_xpos[geoms], data.geom_xmat[geoms]], axis=1)
 
     def _build_static(self) -> None:
-        """Build the tree of the static geoms."""
+        """Build the tree of the static and resting geoms."""
         meshes = self._fixed | {geom: self._loose[geom] for geom in self._movable.resting}
         self._standing = _Triangles(meshes, self._simulation.data) if meshes else None
 
@@ -247,7 +247,7 @@ class EmbreeCaster:
 
 
 def is_invisible(model: Any, geom: int) -> bool:
-    """Return whether a geom is invisible."""
+    """Return whether a geom is fully transparent."""
     material = model.geom_matid[geom]
     rgba = model.geom_rgba[geom] if material < 0 else model.mat_rgba[material]
     return bool(rgba[3] == 0)

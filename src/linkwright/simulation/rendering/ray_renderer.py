@@ -22,7 +22,7 @@ _UNSET = (0.5, 0.5, 0.5, 1.0)
 
 
 class RayRenderer:
-    """Renders images by ray casting.
+    """A renderer that uses ray casting.
 
     Args:
         simulation: the simulation of the world.
@@ -57,7 +57,7 @@ class RayRenderer:
 
     def _shaded(self, hits: Hits, origin: Array, rays: Any, forwards: Array) -> Any:
         simulation = self._simulation
-        paints = simulation.model.geom_rgba, simulation.model.geom_matid  # a data set changes them for each image
+        paints = simulation.model.geom_rgba, simulation.model.geom_matid  # a data set varies them for each image
         if self._revision != simulation.revision or not all(map(np.array_equal, paints, self._paints)):
             self._colours = geom_colours(simulation.model)
             self._paints = tuple(paint.copy() for paint in paints)
@@ -83,11 +83,11 @@ def _background(colour: Sequence[float]) -> Any:
 
 
 def _share(placed: PlacedLight, hits: Hits, turned: Any, origin: Array, rays: Any) -> Any:
-    """Return the share of a light's brightness that each surface receives, shape (n,)."""
+    """Return the fraction of a light's brightness that each hit surface receives, shape (n,)."""
     if placed.light.type == "directional":
         share = (hits.normals @ -placed.direction.astype(np.float32)) * turned
         return np.maximum(share, 0, out=share)
-    with np.errstate(invalid="ignore"):  # for rays without a hit
+    with np.errstate(invalid="ignore"):  # Rays without a hit have infinite distances.
         away = placed.position.astype(np.float32) - (origin.astype(np.float32) + rays * hits.distances[:, None])
         distance = np.linalg.norm(away, axis=1)
         away /= np.maximum(distance, 1e-9)[:, None]
@@ -102,9 +102,9 @@ def _share(placed: PlacedLight, hits: Hits, turned: Any, origin: Array, rays: An
 
 
 def geom_colours(model: Any) -> Any:
-    """Return the colour of each geom, from 0 to 1, shape (geoms, 3), float32.
+    """Return the colours of all geoms, from 0 to 1, shape (geoms, 3), float32.
 
-    The colour includes the mean of the geom's texture.
+    The colour of a textured geom is multiplied by the mean colour of its texture.
     """
     colours = np.array(model.geom_rgba[:, :3], dtype=np.float64)
     for geom in np.nonzero(model.geom_matid >= 0)[0]:

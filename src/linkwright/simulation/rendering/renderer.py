@@ -20,7 +20,7 @@ _INTO_LINK = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
 
 
 class Channels(Flag):
-    """The requested parts of an image."""
+    """The channels of an image that can be requested."""
 
     COLOUR = auto()
     DEPTH = auto()
@@ -29,7 +29,7 @@ class Channels(Flag):
 
 @dataclass(frozen=True, slots=True)
 class RenderedImage:
-    """An image; parts that were not requested are None.
+    """A rendered image; channels that were not requested are None.
 
     Attributes:
         colour: red, green, blue: shape (height, width, 3), uint8.
@@ -44,7 +44,7 @@ class RenderedImage:
 
 
 class Renderer(Protocol):
-    """Renders images of a simulation, in the thread that uses the simulation."""
+    """The interface of renderers, which are used in the thread of the simulation."""
 
     way: Phrase
     """How it does so, for people."""
@@ -54,15 +54,15 @@ class Renderer(Protocol):
 
         Args:
             optics: the projection of the camera.
-            pose: the pose of the camera in the world; it looks along x, with z up.
-            channels: the requested parts.
+            pose: the pose of the camera in the world; the camera looks along x, with z up.
+            channels: the requested channels.
         """
 
     def close(self) -> None:
-        """Free the system resources."""
+        """Free the system resources of the renderer."""
 
 
 def axes_of(pose: Transform) -> Array:
-    """Return the axes of a camera's image in the world as columns: right, down, forwards."""
+    """Return the image axes of a camera in the world as columns: right, down, forwards."""
     axes: Array = rotation_matrix(np.array(pose[3:])) @ _INTO_LINK
     return axes

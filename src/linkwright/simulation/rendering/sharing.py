@@ -1,4 +1,4 @@
-"""Share one renderer among all cameras of a simulation."""
+"""Shares one renderer among all cameras of a simulation."""
 
 from __future__ import annotations
 
@@ -17,7 +17,10 @@ _shared: WeakKeyDictionary[Simulation, SharedRenderer] = WeakKeyDictionary()
 
 
 class SharedRenderer:
-    """The renderer that all cameras of a simulation share, created in the thread of the first image."""
+    """The renderer that all cameras of a simulation share.
+
+    It is created in the thread that renders the first image.
+    """
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
@@ -29,7 +32,7 @@ class SharedRenderer:
     def render(
         self, optics: Optics, pose: Transform, channels: Channels, report: Callable[[Phrase], object]
     ) -> RenderedImage:
-        """Render a camera's current view; before the first image, call `report` with the kind of renderer."""
+        """Render the current view of a camera; the first call passes the kind of renderer to `report`."""
         if self._renderer is None or self._thread != threading.get_ident():
             self._renderer, self._thread = make_renderer(self._simulation), threading.get_ident()
         if not self._reported:

@@ -23,7 +23,10 @@ def is_endless(model: Any, geom: int) -> bool:
 
 
 def triangles_of(model: Any, geom: int) -> Mesh | None:
-    """Return the triangles of a geom in its own frame, or None if it has none, like an infinite plane."""
+    """Return the triangles of a geom in its own frame, or None for an infinite plane.
+
+    Geoms of unsupported types also have no triangles.
+    """
     kinds = load_mujoco().mjtGeom
     kind, size = model.geom_type[geom], model.geom_size[geom]
     if kind == kinds.mjGEOM_BOX:
@@ -53,7 +56,7 @@ def _box(half: Array) -> Mesh:
 
 
 def _grid(rows: int, columns: int, *, closed: bool) -> Any:
-    """Return the triangles between rows of vertices; if closed, the first column follows the last one."""
+    """Return the triangles between rows of vertices; if `closed`, each row is a closed ring."""
     row, column = np.meshgrid(np.arange(rows - 1), np.arange(columns if closed else columns - 1), indexing="ij")
     right = (column + 1) % columns
     a, b = row * columns + column, row * columns + right
@@ -62,7 +65,10 @@ def _grid(rows: int, columns: int, *, closed: bool) -> Any:
 
 
 def _round(radii: Array, half: float) -> Mesh:
-    """Return the mesh of an ellipsoid, with its upper and lower halves moved apart for a capsule."""
+    """Return the mesh of an ellipsoid whose upper and lower halves are each moved outwards by `half`.
+
+    With equal radii, this is a capsule.
+    """
     up = np.linspace(-np.pi / 2, np.pi / 2, _ALONG)
     around = np.linspace(0, 2 * np.pi, _AROUND, endpoint=False)
     rise, turn = np.meshgrid(up, around, indexing="ij")

@@ -1,4 +1,4 @@
-"""Links as bodies of MuJoCo: mass, joints, collision geoms and visual geoms."""
+"""Converts links to bodies of MuJoCo: mass, joints, collision geoms and visual geoms."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ _WATER = 1000.0
 
 
 class BodyWriter:
-    """Writes links into a specification.
+    """Writes links into a MuJoCo specification.
 
     Args:
         meshes: the library of meshes.
@@ -59,7 +59,7 @@ class BodyWriter:
     Attributes:
         diagnostics: findings on parts that cannot be simulated.
         unspecified: names of the colliding geoms whose friction is not specified.
-        grips: the friction of geoms when a motor turns them, by the names of the geoms.
+        grips: the friction that geoms have when a motor turns them, by geom name.
     """
 
     def __init__(self, meshes: MeshLibrary) -> None:
@@ -70,7 +70,10 @@ class BodyWriter:
         self._mujoco = load_mujoco()
 
     def give_mass(self, body: Any, link: Link, frames: Frames) -> None:
-        """Set the mass properties of a body from its link; 1 kg and 1 kg m2 if it has none, as in SDF."""
+        """Set the mass properties of a body from its link; by default 1 kg and 1 kg m2, as in SDF.
+
+        Impossible values are replaced and reported.
+        """
         inertial = link.inertial or _USUAL_INERTIAL
         if inertial.auto:
             inertial = _inertial_from_shapes(link, frames) or _USUAL_INERTIAL
@@ -107,7 +110,7 @@ class BodyWriter:
                 name=link.name,
             )
             self._warn("SIM111", message, inertial.element or link.element)
-        elif excess > -_FLAT:  # for flat bodies, a rounding error would make MuJoCo use the mean of the moments
+        elif excess > -_FLAT:  # With a rounding error, MuJoCo would use the mean moment.
             tensor = tensor + np.eye(3) * np.trace(tensor) / 2 * (max(excess, 0.0) + _FLAT)
         least = float(np.linalg.eigvalsh(tensor)[0])
         if least < _LEAST_MOMENT:
@@ -118,7 +121,7 @@ class BodyWriter:
         body.fullinertia = [tensor[0, 0], tensor[1, 1], tensor[2, 2], tensor[0, 1], tensor[0, 2], tensor[1, 2]]
 
     def add_joint(self, body: Any, placed: PlacedJoint, child: Transform) -> None:
-        """Add MuJoCo's joints for a joint to the body of its child.
+        """Add the MuJoCo joints that represent a joint to the body of the joint's child.
 
         Args:
             body: the body of the child link.
@@ -175,7 +178,7 @@ class BodyWriter:
                     geom.rgba = _colour(visual, _WHITE if geom.material else _GREY)
 
     def add_collisions(self, body: Any, link: Link, frames: Frames, *, fixed: bool) -> None:
-        """Add the collisions of a link as geoms."""
+        """Add the collisions of a link as geoms, and record their friction."""
         counts: Counter[str] = Counter()
         for collision in link.collisions:
             pose = frames.in_link(collision.pose, link.name)
@@ -191,7 +194,10 @@ class BodyWriter:
     def _geoms(
         self, body: Any, part: Visual | Collision, pose: Transform, counts: Counter[str], *, fixed: bool
     ) -> Iterable[Any]:
-        """Return the geoms of a shape with their names; `counts` numbers geoms of the same name."""
+        """Add the geoms of a visual or collision to a body, name and return them.
+
+        `counts` counts the geoms per name, because names must be unique in a body.
+        """
         collision = isinstance(part, Collision)
         geoms = [] if isinstance(part, Collision) else self._meshes.wrapped(body, part, pose)
         simple = None if geoms else add_shape(body, part.geometry, pose, fixed=fixed)
@@ -215,7 +221,7 @@ class BodyWriter:
 
 
 def _inertial_from_shapes(link: Link, frames: Frames) -> Inertial | None:
-    """Return a link's mass properties computed from its collisions; None if they have no volume."""
+    """Return the mass properties of a link's simple collision shapes; None if they have no mass."""
     assert link.inertial is not None
     parts = []
     for collision in link.collisions:
@@ -238,7 +244,7 @@ def _colour(visual: Visual, usual: Color) -> list[float]:
 
 
 def set_first(element: Any, name: str, value: float) -> None:
-    """Set a coefficient of an element; some are polynomials since MuJoCo 4, whose first term is set."""
+    """Set a scalar attribute of an element, or the first term if MuJoCo 4 stores a polynomial."""
     held = getattr(element, name)
     if np.ndim(held):
         held[0] = value
@@ -247,9 +253,9 @@ def set_first(element: Any, name: str, value: float) -> None:
 
 
 def hinge_anchors(placed: PlacedJoint, distance: float) -> list[Vector3]:
-    """Return two points in the world on the axis of a joint.
+    """Return two points on the axis of a joint, in the world, at the given distance in m.
 
-    They hold the joint if nothing turns about another axis.
+    Fixing both points allows only rotation about this axis.
     """
     x, y, z = placed.pose[:3]
     _, direction = placed.axes[0]

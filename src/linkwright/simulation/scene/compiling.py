@@ -1,4 +1,4 @@
-"""Compile a scene to MuJoCo's model, and find the models that MuJoCo refuses."""
+"""Compiles a scene to MuJoCo's model, and finds the models that MuJoCo rejects."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _BYTES_A_PAIR, _BYTES = 3, 1 << 28
 
 
 def count_links(models: Iterable[Model]) -> int:
-    """Return the number of links of models, provided that so many can be simulated.
+    """Return the number of links of models, after checking it against the maximum.
 
     Raises:
         LinkwrightError: SIM105, there are too many links.
@@ -36,7 +36,7 @@ def count_links(models: Iterable[Model]) -> int:
 
 
 def fewer_links() -> Phrase:
-    """Return a hint for a world with too many links."""
+    """Return the hint for a world with too many links."""
     return phrase("use at most {most} links; put shapes that never move into one link", most=MOST_LINKS)
 
 
@@ -45,14 +45,14 @@ def _links_in(model: Model) -> int:
 
 
 def compile_scene(scene: Scene, before: tuple[Any, Any] | None = None) -> tuple[Any, Any]:
-    """Compile a scene to MuJoCo's model and data.
+    """Compile a scene, and return MuJoCo's model and data.
 
     Args:
         scene: the simulated scene.
         before: the previous model and data, whose state is kept.
 
     Raises:
-        LinkwrightError: SIM104, MuJoCo refuses the scene.
+        LinkwrightError: SIM104, MuJoCo rejects the scene; SIM105, there are too many links.
     """
     mujoco = load_mujoco()
     scene.settle()
@@ -61,7 +61,7 @@ def compile_scene(scene: Scene, before: tuple[Any, Any] | None = None) -> tuple[
         scene.spec.memory = _BYTES_A_PAIR * count * count + _BYTES
     try:
         with catch_warnings():
-            simplefilter("ignore")  # MuJoCo's warnings; `check` and the simulation report the relevant ones
+            simplefilter("ignore")  # `check` and the simulation report the relevant warnings of MuJoCo
             if before is not None:
                 model, data = scene.spec.recompile(*before)
                 return model, data
@@ -75,18 +75,18 @@ def compile_scene(scene: Scene, before: tuple[Any, Any] | None = None) -> tuple[
 
 
 def refused_models(world: World, finder: ResourceFinder) -> dict[str, Phrase]:
-    """Return the models that MuJoCo refuses when each is compiled alone, with its messages.
+    """Return the models that MuJoCo rejects when each is compiled alone, with MuJoCo's messages.
 
     Args:
         world: the world, with its includes resolved and as it was saved.
-        finder: the finder of its meshes.
+        finder: the finder of mesh files.
     """
     found = {model.name: _refusal(replace(world, models=(model,)), finder) for model in world.models}
     return {name: why for name, why in found.items() if why is not None}
 
 
 def _refusal(world: World, finder: ResourceFinder) -> Phrase | None:
-    """Return MuJoCo's message if it refuses a world; None if it accepts the world."""
+    """Return the message if a world cannot be compiled; None otherwise."""
     try:
         compile_scene(Scene(world, MeshLibrary(finder)))
     except LinkwrightError as error:
@@ -95,7 +95,7 @@ def _refusal(world: World, finder: ResourceFinder) -> Phrase | None:
 
 
 def step_in_nanoseconds(step: float, world: World) -> int:
-    """Return a time step given in s as nanoseconds, after checking it.
+    """Return a time step in ns, given in s; `world` locates an invalid value.
 
     Raises:
         LinkwrightError: SIM106, the time step is not positive, or shorter than a nanosecond.

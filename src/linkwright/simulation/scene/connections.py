@@ -1,6 +1,6 @@
 """Joints of a world, which connect links of its models (SDF 1.7 and later).
 
-If a model's link can become the child of the other link, the joint moves the model in the way that its own joints move
+If a link of a model can become the child of the other link, the joint moves the model as the model's own joints move
 its links. If both links already have parents, the joint closes a loop.
 """
 
@@ -21,7 +21,7 @@ class Connections:
     """The joints of a world that connect its models.
 
     Attributes:
-        hanging: joints that connect models to their parents, by the names of the child links.
+        hanging: joints that attach models to their parents, by the names of the child links.
         loops: joints between links that already have a parent.
         poses: the poses of the connected models' frames in the world.
     """
@@ -31,7 +31,7 @@ class Connections:
     poses: dict[str, Transform]
 
     def of(self, structure: Structure, name: str, pose: Transform, others: Iterable[str]) -> Connected:
-        """Return a model with the joints that connect it with earlier models.
+        """Return a model with the joints that connect it to earlier models.
 
         Args:
             structure: the model's own links and joints.
@@ -56,13 +56,13 @@ class Connections:
         return Connected(replace(structure, links=links), loops, hangs_on)
 
     def in_order(self, names: Sequence[str]) -> list[str]:
-        """Return names of models in their order, but each after the models to which joints connect it."""
+        """Return model names in the given order, but each after the models to which it is attached."""
         above: dict[str, list[str]] = {}
         for joint in self.hanging.values():
             above.setdefault(model_of(joint.child), []).append(model_of(joint.parent))
         wanted = set(names)
         ordered: dict[str, None] = {}
-        begun: set[str] = set()  # joints may form a cycle through other links
+        begun: set[str] = set()  # joints may connect the models in a cycle
         pending = list(reversed(names))
         while pending:
             name = pending[-1]
@@ -79,12 +79,12 @@ class Connections:
 
 @dataclass(frozen=True, slots=True)
 class Connected:
-    """A model with the joints that connect it with other models.
+    """A model with the joints that connect it to other models.
 
     Attributes:
-        structure: the links, held by their own joints or by joints of the world.
+        structure: the links, attached by their own joints or by joints of the world.
         loops: joints of the world that close loops with links of other models, or within the model.
-        hangs_on: names of the models to which these joints connect it.
+        hangs_on: names of the models to which these joints connect the model.
     """
 
     structure: Structure
@@ -93,7 +93,7 @@ class Connected:
 
 
 def connections_of(world: World) -> Connections:
-    """Return the joints of a world, without joints whose links are missing or never move.
+    """Return the joints of a world, except joints whose links are missing or never move.
 
     Args:
         world: the world, with its includes resolved and as it was saved.
@@ -110,7 +110,7 @@ def connections_of(world: World) -> Connections:
             try:
                 structure = structure_of(model, model.name, frames.pose(model.name))
             except FrameError:
-                continue  # the scene reports it
+                continue  # The scene reports this model.
             poses[model.name] = frames.pose(model.name)
             held |= {link.link.name: link for link in structure.links}
 
@@ -123,7 +123,7 @@ def connections_of(world: World) -> Connections:
         there = held.keys() | {WORLD}
         if not {joint.parent, joint.child} <= there or not {joint.parent, joint.child} & moving:
             continue
-        can_hang = len(_models(joint)) > 1 and joint.joint.type != "gearbox"  # links of one model have their own order
+        can_hang = len(_models(joint)) > 1 and joint.joint.type != "gearbox"  # A model orders its own links.
         ways = (joint, _reversed_joint(joint)) if can_hang else ()
         fit = (way for way in ways if way.child in free and not is_below(holding, way.child, way.parent))
         hung = next(fit, None)
@@ -136,7 +136,7 @@ def connections_of(world: World) -> Connections:
 
 
 def model_of(link: str) -> str:
-    """Return the model of the world that contains a link; ``world`` if there is none."""
+    """Return the top-level model of a link or joint name; ``world`` for the world itself."""
     return link.partition(SEPARATOR)[0]
 
 
@@ -150,7 +150,7 @@ def _placed(world: World, frames: Frames) -> list[PlacedJoint]:
         try:
             placed = placed_joint(joint, frames, IDENTITY, "")
         except FrameError:
-            continue  # `check` reports it
+            continue  # `check` reports this joint.
         if placed.name not in found and placed.parent != placed.child:
             found[placed.name] = placed
     return list(found.values())

@@ -17,21 +17,24 @@ _STEPS = 4.0
 
 
 def screw_coupling(spec: Any, joint: PlacedJoint) -> Iterator[Any]:
-    """Yield the coupling of a screw joint's translation with its rotation, by its pitch in m per revolution."""
+    """Yield the equality constraint of a screw joint's translation and rotation.
+
+    The thread pitch is in m per revolution. Nothing is yielded for other types of joints.
+    """
     if joint.joint.type == "screw" and joint.axes:
         pitch = joint.joint.thread_pitch or 0.0
         yield _coupled(spec, joint.name + THREAD, joint.name, pitch / tau)
 
 
 def gearbox_coupling(spec: Any, gear: PlacedJoint, joints: Iterable[PlacedJoint]) -> Iterator[Any]:
-    """Yield the coupling of a gearbox.
+    """Yield the equality constraint of a gearbox, unless one of its links has no joint.
 
     The child turns ``-gearbox_ratio`` times as far as the parent (SDFormat).
 
     Args:
         spec: the specification.
         gear: the gearbox.
-        joints: the joints that move; both links of the gearbox turn about one of them.
+        joints: the joints that move; both links of the gearbox turn about one of these joints.
     """
     holding = {joint.child: joint for joint in joints if joint.axes}
     parent, child = holding.get(gear.parent), holding.get(gear.child)
@@ -55,6 +58,6 @@ def _in_world(joint: PlacedJoint, direction: Vector3) -> Vector3:
 
 
 def _sign(direction: Vector3, joint: PlacedJoint) -> float:
-    """Return 1 if a joint's axis points along a direction, or -1 if it points the opposite way."""
+    """Return 1 if a joint's axis points along a direction, or -1 if the axis points the opposite way."""
     axis = _in_world(joint, joint.axes[0][1])
     return -1.0 if sum(a * b for a, b in zip(axis, direction, strict=True)) < 0.0 else 1.0

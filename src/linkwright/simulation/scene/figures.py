@@ -1,4 +1,4 @@
-"""Walking actors and roads, which are drawn but have no contacts."""
+"""Walking actors and roads, which are visible but have no contacts."""
 
 from __future__ import annotations
 
@@ -38,11 +38,11 @@ class Figure:
     """An actor or a road of a scene.
 
     Attributes:
-        model: the model that gives its appearance.
+        model: the model that determines the appearance.
         pose: the pose of the model at time 0.
         walk: the path of an actor; None for a static figure.
-        origin: the pose in the world of the frame of the walk's points.
-        links: its links, placed in the frame of the model.
+        origin: the pose in the world of the frame in which the points of `walk` are given.
+        links: the links of the model, placed in the frame of the model.
     """
 
     model: Model
@@ -52,15 +52,15 @@ class Figure:
     links: tuple[PlacedLink, ...]
 
     def pose_at(self, seconds: float) -> Transform:
-        """Return the pose at a time of the world."""
+        """Return the pose in the world at a simulated time in s."""
         return self.pose if self.walk is None else compose(self.origin, self.walk.pose(seconds))
 
 
 def figures_of(world: World, meshes: MeshLibrary) -> list[Figure]:
-    """Return the actors and roads of a world, without those that cannot be placed, which `check` reports.
+    """Return the actors and roads of a world.
 
-    The points of walks are in the frame of the actor in a world for gz, and in the frame of the world in a world for
-    Gazebo classic.
+    Actors that cannot be placed are left out; `check` reports them. In a world for gz, the points of walks are in the
+    frame of the actor; in a world for Gazebo classic, they are in the frame of the world.
 
     Args:
         world: the world, with its includes resolved.
@@ -89,7 +89,7 @@ def figures_of(world: World, meshes: MeshLibrary) -> list[Figure]:
 
 
 def _renamed(item: T, taken: set[str]) -> T:
-    """Return an actor or road with a name that is free."""
+    """Return an actor or road under a name that is not in `taken`, and add the name to `taken`."""
     while item.name in taken:
         item = replace(item, name=f"{item.name}~")
     taken.add(item.name)
@@ -97,7 +97,7 @@ def _renamed(item: T, taken: set[str]) -> T:
 
 
 def draw(figure: Figure, spec: Any, writer: BodyWriter) -> None:
-    """Add the bodies of a figure to a specification of MuJoCo: without dynamics and without contacts."""
+    """Add the links of a figure to a MuJoCo specification, as bodies without contacts or dynamics."""
     for placed in figure.links:
         body = spec.worldbody.add_body(name=placed.name, mocap=figure.walk is not None)
         set_pose(body, compose(figure.pose, placed.pose))
@@ -106,7 +106,7 @@ def draw(figure: Figure, spec: Any, writer: BodyWriter) -> None:
 
 
 def let_walk(figures: Iterable[Figure], model: Any, data: Any, seconds: float) -> None:
-    """Move actors to their poses at a time of the world, in MuJoCo's data."""
+    """Set the poses of actors in MuJoCo's data for a simulated time in s."""
     for figure in figures:
         if figure.walk is None:
             continue
@@ -116,7 +116,7 @@ def let_walk(figures: Iterable[Figure], model: Any, data: Any, seconds: float) -
 
 
 def put_kinematic(structure: Structure, moved: Transform, model: Any, data: Any) -> bool:
-    """Set the poses of a model's kinematic links in MuJoCo's data; return whether it has any.
+    """Set the poses of a model's kinematic links in MuJoCo's data; return whether there are any.
 
     Args:
         structure: the links of the model.
@@ -139,9 +139,9 @@ def _put(place: int, pose: Transform, data: Any) -> None:
 
 
 def _hips(actor: Actor, meshes: MeshLibrary) -> Vector3 | None:
-    """Return the origin of a skin's skeleton in m.
+    """Return the origin of a skin's skeleton in m; None if the mesh file is missing.
 
-    It is zero without a skeleton, and None if the mesh file is missing.
+    The origin is zero if there is no skeleton.
     """
     if actor.skin is None:
         return (0.0, 0.0, 0.0)
@@ -152,7 +152,10 @@ def _hips(actor: Actor, meshes: MeshLibrary) -> Vector3 | None:
 
 
 def skeleton_origin(path: Path) -> Vector3:
-    """Return the origin of the first joint of a COLLADA file's skeleton, in its bind pose, in m."""
+    """Return the origin of the first joint of a COLLADA file's skeleton, in its bind pose, in m.
+
+    The origin is zero if the file has no usable skeleton.
+    """
     try:
         root = parse_file(path).root
     except LinkwrightError:

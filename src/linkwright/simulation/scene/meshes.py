@@ -45,7 +45,7 @@ class MeshLibrary:
     Attributes:
         spec: the specification to which the meshes are added.
         diagnostics: findings on meshes and images that cannot be used.
-        used: the files that were requested since this was cleared, with their change times in ns since the epoch.
+        used: the files requested since `used` was last cleared, with their modification times in ns since the epoch.
     """
 
     def __init__(self, finder: ResourceFinder) -> None:
@@ -55,19 +55,21 @@ class MeshLibrary:
         self._finder = finder
         self._files: dict[tuple[str, Path], Path | None] = {}
         self._assets: dict[Hashable, list[str]] = {}
-        self._textures: dict[bytes, str] = {}  # names of textures by their PNG images
+        self._textures: dict[bytes, str] = {}  # texture names, by PNG image
         self._reported: set[str] = set()
         self._mapped: set[str] = set()  # meshes of the specification that have texture coordinates
 
     def set_finder(self, finder: ResourceFinder) -> None:
-        """Set the finder of files; missing files are searched for again."""
+        """Set the finder of mesh files; missing files are searched for again."""
         self._finder = finder
         self._files = {key: path for key, path in self._files.items() if path is not None}
 
     def collisions(
         self, body: Any, shape: Shape, pose: Transform, element: Element | None, *, fixed: bool
     ) -> list[Any]:
-        """Add a collision to a body as convex pieces; return an empty list for a mesh that cannot be used.
+        """Add a collision to a body as convex pieces, and return the added geoms.
+
+        The list is empty for a mesh that cannot be used.
 
         Args:
             body: the body of the specification.
@@ -84,7 +86,10 @@ class MeshLibrary:
         return [self._geom(body, pose, name) for name in self._assets[key]]
 
     def visuals(self, body: Any, shape: Shape, pose: Transform, element: Element | None) -> list[Any]:
-        """Add a visual with the materials of its file to a body; the arguments are those of `collisions`."""
+        """Add a visual, with the materials of its mesh file, to a body, and return the added geoms.
+
+        The arguments are those of `collisions`.
+        """
         if isinstance(shape, Heightmap):
             return self._heightmap(body, shape, pose, element)
         path = self._path(shape, element)
@@ -105,7 +110,7 @@ class MeshLibrary:
         return geom
 
     def _pieces(self, shape: Shape, element: Element | None, *, fixed: bool) -> list[Array]:
-        """Return the vertices of the convex pieces of a mesh."""
+        """Return the vertices of the convex pieces of a shape; an empty list if it cannot be used."""
         if isinstance(shape, Cone):
             return [cone_corners(shape)] if min(shape.radius, shape.length) > 0 else []
         if isinstance(shape, Polyline):
@@ -151,7 +156,7 @@ class MeshLibrary:
             yield name
 
     def _seen(self, positions: Array, faces: Any, coordinates: Array | None) -> str:
-        """Add a mesh asset, with texture coordinates if there are any, and return its name."""
+        """Add a mesh asset for a visual, with any texture coordinates, and return its name."""
         name = f"mesh {len(self.spec.meshes)}"
         mesh = self.spec.add_mesh(name=name, inertia=load_mujoco().mjtMeshInertia.mjMESH_INERTIA_SHELL)
         mesh.uservert = _flat(_pad_to_four(positions))
@@ -162,9 +167,9 @@ class MeshLibrary:
         return name
 
     def wrapped(self, body: Any, visual: Visual, pose: Transform) -> list[Any]:
-        """Add a simple shape to a body as a mesh with texture coordinates.
+        """Add a textured simple shape to a body as a mesh, and return the added geoms.
 
-        Nothing is added for a shape that cannot be textured.
+        The list is empty for a visual without a texture and for a shape that cannot be textured.
         """
         shape = visual.geometry
         triangles = textured_mesh(shape) if self.material_of(visual) else None
@@ -189,7 +194,7 @@ class MeshLibrary:
     def _give_image(self, material: Any, image: bytes) -> None:
         """Add a PNG texture to a material of MuJoCo.
 
-        Equal images share one texture, because each compilation decodes it.
+        Equal images share one texture, because each compilation decodes every texture.
         """
         mujoco = load_mujoco()
         if image not in self._textures:
@@ -204,7 +209,7 @@ class MeshLibrary:
         return geom.meshname in self._mapped
 
     def material_of(self, visual: Visual) -> str:
-        """Return the name of MuJoCo's material with the texture of a visual; empty for none.
+        """Return the name of the MuJoCo material with the texture of a visual; empty if it has no texture.
 
         An emissive map replaces a missing colour map.
         """
@@ -287,7 +292,7 @@ class MeshLibrary:
         return []
 
     def _path(self, shape: Shape, element: Element | None) -> Path | None:
-        """Return the file of a shape, or None.
+        """Return the file of a mesh or heightmap; None for other shapes and for a missing file.
 
         A missing file is reported once.
         """
@@ -297,7 +302,7 @@ class MeshLibrary:
         return path
 
     def file(self, uri: str, element: Element | None) -> Path | None:
-        """Return the file that an element names; None if it is missing, which is reported once."""
+        """Return the file with a URI; None if there is none, which is reported once."""
         if not uri:
             return None
         source = element.source if element is not None else None
@@ -317,7 +322,7 @@ class MeshLibrary:
         self._report(Diagnostic(found.code, message, severity=Severity.WARNING, hint=found.hint), element)
 
     def _report(self, found: Diagnostic, element: Element | None) -> None:
-        """Report a problem of an element once."""
+        """Add a finding on an element, unless a finding with the same message was added before."""
         if found.message in self._reported:
             return
         self._reported.add(found.message)
@@ -327,7 +332,11 @@ class MeshLibrary:
 
 
 def _bounded(path: Path, count: int) -> None:
-    """Check that a mesh does not have too many triangles (SIM115)."""
+    """Check that a mesh does not have too many triangles.
+
+    Raises:
+        LinkwrightError: SIM115, there are too many triangles.
+    """
     if count > _MOST_TRIANGLES:
         values = {"path": display_path(path), "count": count, "most": _MOST_TRIANGLES}
         message = phrase("the mesh '{path}' has {count} triangles, but at most {most} can be simulated", **values)
@@ -350,10 +359,7 @@ def _area(positions: Array, faces: Any) -> float:
 
 
 def _pad_to_four(corners: Array) -> Array:
-    """Return the vertices of a mesh, padded to four by repeating the last one.
-
-    MuJoCo requires at least four.
-    """
+    """Return vertices, padded to at least four by repeating the last one, as MuJoCo requires."""
     return np.concatenate([corners, np.repeat(corners[-1:], max(4 - len(corners), 0), axis=0)])
 
 
@@ -365,17 +371,17 @@ def _joined(parts: Sequence[Triangles]) -> tuple[Array, Any]:
 
 
 def _flat(values: Any, kind: Any = np.float32) -> list[Any]:
-    with np.errstate(over="ignore"):  # MuJoCo refuses and reports numbers that are too large
+    with np.errstate(over="ignore"):  # MuJoCo rejects and reports numbers that are too large.
         return list(np.asarray(values, dtype=kind).ravel().tolist())
 
 
 def _version(path: Path | None) -> tuple[Path | None, int]:
-    """Return a file and the time of its last change, which cause a saved file to be read again."""
+    """Return a cache key for a file, which changes when the file is saved."""
     return path, 0 if path is None else changed_at(path)
 
 
 def changed_at(path: Path) -> int:
-    """Return the time of a file's last change, in ns since the epoch; 0 for a missing file."""
+    """Return the modification time of a file, in ns since the epoch; 0 for a missing file."""
     try:
         return path.stat().st_mtime_ns
     except OSError:

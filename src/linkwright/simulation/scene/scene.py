@@ -53,14 +53,14 @@ class SceneModel:
     """A model of a scene.
 
     Attributes:
-        name: its name in the world.
+        name: the name of the model in the world.
         model: the parsed model.
-        pose: the pose of its frame in the world when it was added.
-        structure: its links and joints.
-        parts: its parts in the specification, in the order in which they were added: root bodies, constraints and
-            actuators.
-        files: its mesh files and their change times, in ns since the epoch.
-        hangs_on: the earlier models to which joints of the world connect it.
+        pose: the pose of the model's frame in the world when the model was added.
+        structure: the links and joints of the model.
+        parts: the parts of the model in the specification, in the order in which they were added: root bodies,
+            constraints and actuators.
+        files: the mesh files of the model and their modification times, in ns since the epoch.
+        hangs_on: the earlier models to which joints of the world connect the model.
     """
 
     name: str
@@ -73,12 +73,12 @@ class SceneModel:
 
     @property
     def is_outdated(self) -> bool:
-        """Whether one of its mesh files has changed since the model was added."""
+        """Whether a mesh file has changed since the model was added."""
         return any(changed_at(path) != changed for path, changed in self.files.items())
 
 
 class Scene:
-    """A world as a specification of MuJoCo.
+    """A world as a MuJoCo specification.
 
     Bodies and joints are named as in the world: ``robot::arm::tip``. The second axis of a joint has the suffix ``#2``,
     and the free joint of a body has the name of the body with the suffix ``#free``.
@@ -87,7 +87,7 @@ class Scene:
         world: the world, with its includes resolved and as it was saved (`linkwright.sdf.saved`).
         meshes: the library of meshes.
         step: the time step in s; by default the time step of the world.
-        refused: names of models that are left out, and why.
+        refused: names of models that are left out, and the reasons.
 
     Attributes:
         spec: the specification.
@@ -116,7 +116,7 @@ class Scene:
         self._writer = BodyWriter(meshes)
         self._meshes = meshes
         self._motors = 0
-        self._driven: dict[str, dict[str, float]] = {}  # by model: the joints with motors, and the rotor inertias
+        self._driven: dict[str, dict[str, float]] = {}  # by model: the driven joints and their rotor inertias
         self._unsettled: set[str] = set()
         self.spec.modelname = world.name or WORLD
         self.spec.compiler.degree = False
@@ -136,17 +136,17 @@ class Scene:
             draw(figure, self.spec, self._writer)
 
     def _in_order(self, models: Iterable[Model]) -> list[Model]:
-        """Return models, each after those to which joints of the world connect it."""
+        """Return models ordered so that each follows the models to which it is attached."""
         models = list(models)
         place = {name: number for number, name in enumerate(self.in_order([model.name for model in models]))}
         return sorted(models, key=lambda model: place[model.name])
 
     def in_order(self, names: Sequence[str]) -> list[str]:
-        """Return names of models, each after those to which joints of the world connect it."""
+        """Return model names ordered so that each follows the models to which it is attached."""
         return self._connections.in_order(names)
 
     def step_of(self, world: World) -> float:
-        """Return the time step of a world in s; a millisecond if it is 0, with a warning."""
+        """Return the time step of a world in s; if it is 0, report this and return one millisecond."""
         physics = physics_of(world)
         if physics.max_step_size:
             return physics.max_step_size
@@ -184,20 +184,23 @@ class Scene:
                 equality.solref = [_LOOP_STEPS * step, 1.0]
 
     def _set_options(self, world: World) -> None:
-        """Set MuJoCo's options from measurements with wheels, casters and resting bodies: decision 0042."""
+        """Set MuJoCo's options to values found by experiments with wheels, casters and resting bodies.
+
+        See decision 0042.
+        """
         option = self.spec.option
         option.timestep = self.step
         option.gravity = list(gravity_of(world))
         option.cone = self._mujoco.mjtCone.mjCONE_ELLIPTIC
         option.impratio = 10.0
-        option.noslip_iterations = 3  # a suddenly accelerated wheel would jump: slipping pushes it off the ground
+        option.noslip_iterations = 3  # otherwise a wheel that accelerates suddenly jumps
         option.integrator = self._mujoco.mjtIntegrator.mjINT_DISCRETE
         option.enableflags |= self._mujoco.mjtEnableBit.mjENBL_SLEEP
         option.disableflags |= self._mujoco.mjtDisableBit.mjDSBL_AUTORESET
 
     @property
     def diagnostics(self) -> list[Diagnostic]:
-        """Findings on parts that cannot be simulated."""
+        """The findings on parts that cannot be simulated."""
         return [*self._findings, *self._writer.diagnostics, *self._meshes.diagnostics]
 
     def add(self, model: Model, name: str, pose: Transform) -> SceneModel:
@@ -205,8 +208,8 @@ class Scene:
 
         Args:
             model: the model, with its includes resolved.
-            name: its name, which no other model has.
-            pose: the pose of its frame in the world.
+            name: the name of the model in the world, which must be unique.
+            pose: the pose of the model's frame in the world.
 
         Raises:
             FrameError: a link of the model cannot be placed.
@@ -246,7 +249,7 @@ class Scene:
 
         Args:
             name: the name of the model.
-            pose: the pose of its frame in the world.
+            pose: the pose of the model's frame in the world.
 
         Raises:
             KeyError: there is no model with this name.
@@ -282,15 +285,18 @@ class Scene:
                 self.joints.pop(held.joint.name, None)
 
     def hanging_on(self, name: str) -> list[str]:
-        """Return the models that joints of the world attach to a model, directly or indirectly, in their order."""
+        """Return the models that joints of the world attach to a model, directly or indirectly.
+
+        The models are in the order in which they were added.
+        """
         found = {name}
-        for model in self.models.values():  # attached models come later in the order
+        for model in self.models.values():  # Attached models are added later.
             if model.hangs_on & found:
                 found.add(model.name)
         return [model for model in self.models if model in found - {name}]
 
     def add_velocity_motor(self, joint: str, gain: float, limit: float) -> str:
-        """Add a motor that holds the velocity of a joint; the wheel that it turns rolls without slipping.
+        """Add a motor that holds the velocity of a joint, and let the wheel on the joint roll.
 
         Args:
             joint: the name of the joint.
@@ -315,7 +321,7 @@ class Scene:
 
         Args:
             joint: the name of the joint.
-            rotor: the inertia of the motor's rotor, in kg m^2 for each second of a step.
+            rotor: the inertia of the motor's rotor, in kg m2 per second of the time step.
         """
         model = joint.partition(SEPARATOR)[0]
         self._unsettled.add(model)
@@ -323,7 +329,7 @@ class Scene:
         rotors[joint] = max(rotor, rotors.get(joint, 0.0))
 
     def let_slide(self, joint: str) -> None:
-        """Let a wheel slide in all directions, as if it had rollers; its motor then only spins it."""
+        """Let a wheel slide in all directions, as if it had rollers; its motor then has no grip."""
         body = self.bodies[self.joints[joint].child]
         for geom in body.geoms:
             self._writer.grips.pop(geom.name, None)
@@ -344,12 +350,12 @@ class Scene:
         return str(equality.name)
 
     def weld(self, parent: str, child: str, pose: Transform) -> None:
-        """Fix a link to another one until `unweld` or until one of them is removed.
+        """Fix a link to another one until `unweld` is called or one of the links is removed.
 
         The models of the two links do not collide.
 
         Args:
-            parent: the name of the link that holds the other one.
+            parent: the name of the link that holds the child.
             child: the name of the link that is held.
             pose: the pose of the child in the frame of the parent.
         """
@@ -366,14 +372,14 @@ class Scene:
                 self.spec.add_exclude(name=f"{name}{number}", bodyname1=one, bodyname2=other)
 
     def unweld(self, parent: str, child: str) -> None:
-        """Remove the constraint that `weld` has added."""
+        """Remove the constraint and the contact exclusions that `weld` has added."""
         name = _weld_name(parent, child)
         parts = (*self.spec.equalities, *self.spec.excludes)
         for part in [part for part in parts if part.name.startswith(name)]:
             self.spec.delete(part)
 
     def is_welded(self, parent: str, child: str) -> bool:
-        """Return whether `weld` holds a link at another one."""
+        """Return whether `weld` has fixed a child link to a parent link."""
         return self.spec.equality(_weld_name(parent, child)) is not None
 
     def _actuator(self, joint: str, limit: float) -> Any:
@@ -387,7 +393,9 @@ class Scene:
         return actuator
 
     def keep_awake(self, link: str, never: Any) -> None:
-        """Keep the bodies that move with a link from falling asleep; static bodies never do.
+        """Prevent the bodies that move with a link from falling asleep.
+
+        A static link is ignored, because it never sleeps. `never` is MuJoCo's value for this policy.
 
         Raises:
             KeyError: there is no such link.
@@ -400,7 +408,7 @@ class Scene:
             root.sleep = never
 
     def settle(self) -> None:
-        """Set the surfaces of wheels and casters of models with motors, once all motors exist."""
+        """Set the surfaces of wheels and casters of models with motors, after all motors were added."""
         for name in self._unsettled & self.models.keys():
             driven = {self.joints[joint].child: joint for joint in self._driven[name]}
             sides = Counter(self.joints[joint].parent for joint in driven.values())
@@ -421,9 +429,7 @@ class Scene:
         parent, above = self.spec.worldbody, IDENTITY
         if joint is not None and joint.parent != WORLD:
             parent, above = self.bodies[joint.parent], poses[joint.parent]
-        driven = (
-            joint is None and link.kinematic and not placed.static
-        )  # it moves to given poses, and forces do not move it
+        driven = joint is None and link.kinematic and not placed.static  # Forces do not move such a body.
         body = self.bodies[placed.name] = parent.add_body(name=placed.name, mocap=driven)
         set_pose(body, compose(invert(above), placed.pose))
         fixed = placed.static or driven
@@ -436,13 +442,13 @@ class Scene:
                 self._writer.add_joint(body, joint, placed.pose)
                 self.joints[joint.name] = joint
         else:
-            body.explicitinertial, body.ipos = True, [0.0, 0.0, 0.0]  # otherwise rays of MuJoCo 3 miss the body
+            body.explicitinertial, body.ipos = True, [0.0, 0.0, 0.0]  # for the rays of MuJoCo 3
         self._writer.add_visuals(body, link, placed.frames, fixed=fixed)
         self._writer.add_collisions(body, link, placed.frames, fixed=fixed)
         return body
 
     def _moving(self, models: Iterable[str]) -> list[PlacedJoint]:
-        """Return the joints of models that move."""
+        """Return the joints of the given models that are simulated as movable."""
         held = (link for name in models for link in self.models[name].structure.links)
         return [link.joint for link in held if link.joint is not None and link.joint.name in self.joints]
 
@@ -456,7 +462,7 @@ class Scene:
             owner, separator, _ = joint.name.rpartition(SEPARATOR)
             leader = f"{owner}{separator}{axis.mimic.joint}{SECOND_AXIS if axis.mimic.axis == 'axis2' else ''}"
             if leader.removesuffix(SECOND_AXIS) not in self.joints:
-                continue  # `check` reports it
+                continue  # `check` reports this axis.
             equality = self.spec.add_equality(type=self._mujoco.mjtEq.mjEQ_JOINT)
             equality.name1, equality.name2 = f"{joint.name}{SECOND_AXIS if number else ''}", leader
             offset = axis.mimic.offset - axis.mimic.multiplier * axis.mimic.reference
@@ -464,7 +470,10 @@ class Scene:
             yield equality
 
     def _closed(self, joint: PlacedJoint, poses: dict[str, Transform]) -> Iterator[Any]:
-        """Yield the equality constraint for a joint that closes a loop."""
+        """Yield the equality constraints of a joint that closes a loop.
+
+        A joint of a type that cannot close a loop is reported.
+        """
         kinds, ends = self._mujoco.mjtEq, (joint.child, joint.parent)
         points = hinge_anchors(joint, _ANCHORS_APART) if joint.axes else [joint.pose[:3]]
         if joint.joint.type == "fixed":
@@ -491,14 +500,14 @@ class Scene:
         return equality
 
     def _strangers(self, structure: Structure) -> Iterator[Any]:
-        """Yield contact exclusions between links of one model, unless ``<self_collide>`` allows contacts."""
+        """Yield contact exclusions for pairs of links of a model, unless ``<self_collide>`` is set."""
         touching = [held.link for held in structure.links if held.link.link.collisions and not held.link.static]
         for one, other in combinations(touching, 2):
             if not (_collides(one.link.self_collide, one.model) and _collides(other.link.self_collide, other.model)):
                 yield self.spec.add_exclude(bodyname1=one.name, bodyname2=other.name)
 
     def _neighbours(self, connected: Connected) -> Iterator[Any]:
-        """Yield contact exclusions between links that joints of the world connect, as within a model."""
+        """Yield contact exclusions for pairs of links that joints of the world connect."""
         own = {held.link.name for held in connected.structure.links}
         hung = (held.joint for held in connected.structure.links if held.joint is not None)
         joints = (*(joint for joint in hung if joint.parent not in own), *connected.loops)

@@ -1,4 +1,4 @@
-"""SDF shapes as geoms of MuJoCo."""
+"""Converts SDF shapes to geoms of MuJoCo."""
 
 from __future__ import annotations
 
@@ -20,19 +20,19 @@ _CORNERS = 32
 
 
 def set_pose(element: Any, pose: Transform) -> None:
-    """Set the pose of an element (body, geom, site or camera) in the frame of its body."""
+    """Set the pose of a body, geom, site or camera in the frame of its parent body."""
     x, y, z, qx, qy, qz, qw = pose
     element.pos = [x, y, z]
     element.quat = [qw, qx, qy, qz]
 
 
 def add_shape(body: Any, shape: Shape, pose: Transform, *, fixed: bool) -> Any | None:
-    """Add a simple shape to a body; return None if it is not simple, or has no extent.
+    """Add a simple shape to a body; return the geom, or None for another or an empty shape.
 
     Args:
         body: the body of the specification.
         shape: the shape; `linkwright.simulation.scene.meshes` handles meshes and heightmaps.
-        pose: its pose in the frame of the body.
+        pose: the pose of the shape in the frame of the body.
         fixed: whether the body never moves.
     """
     kinds = load_mujoco().mjtGeom
@@ -61,7 +61,7 @@ def add_shape(body: Any, shape: Shape, pose: Transform, *, fixed: bool) -> Any |
 
 
 def cone_corners(cone: Cone) -> np.ndarray[Any, np.dtype[np.float64]]:
-    """Return the vertices in m of a cone whose base is a polygon, shape (vertices, 3)."""
+    """Return the vertices in m of a cone whose base is approximated by a polygon, shape (n, 3)."""
     turns = [2 * pi * index / _CORNERS for index in range(_CORNERS)]
     ring = [(cone.radius * cos(turn), cone.radius * sin(turn), -cone.length / 2) for turn in turns]
     return np.array([*ring, (0.0, 0.0, cone.length / 2)])

@@ -1,4 +1,4 @@
-"""A model's links and joints as the kinematic trees that MuJoCo needs, and the joints that close loops."""
+"""A model as the kinematic trees that MuJoCo requires, and the joints that close loops."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ class PlacedJoint:
     Attributes:
         name: the name with the enclosing models, ``robot::arm::elbow``; a joint of the world has only its own name.
         joint: the parsed joint.
-        parent: its parent link, named as in `PlacedLink`; ``world`` for the world.
-        child: the link that it moves.
-        pose: the pose of its frame in the world.
-        axes: its axes, with the direction of each in the frame of the joint.
+        parent: the parent link, named as in `PlacedLink`; ``world`` for the world.
+        child: the link that the joint moves.
+        pose: the pose of the joint's frame in the world.
+        axes: the axes of the joint, with the direction of each in the frame of the joint.
     """
 
     name: str
@@ -38,7 +38,7 @@ class PlacedJoint:
 
 @dataclass(frozen=True, slots=True)
 class HeldLink:
-    """A link and the joint that connects it to its parent, which is None for a root."""
+    """A link, and the joint that connects it to its parent; the joint of a root is None."""
 
     link: PlacedLink
     joint: PlacedJoint | None
@@ -58,12 +58,12 @@ class Structure:
 
 
 def structure_of(model: Model, name: str, pose: Transform) -> Structure:
-    """Compute the kinematic trees of a model, without joints whose links are missing.
+    """Return the kinematic trees of a model, without joints whose links are missing.
 
     Args:
         model: the model, with its includes resolved.
-        name: its name in the world.
-        pose: the pose of its frame in the world.
+        name: the name of the model in the world.
+        pose: the pose of the model's frame in the world.
 
     Raises:
         FrameError: a link cannot be placed.
@@ -76,7 +76,7 @@ def structure_of(model: Model, name: str, pose: Transform) -> Structure:
             try:
                 placed = placed_joint(joint, inner, place, path)
             except FrameError:
-                continue  # `check` reports it
+                continue  # `check` reports this joint.
             ends_are_there = placed.child in links and (placed.parent in links or placed.parent == WORLD)
             if ends_are_there and placed.parent != placed.child:
                 while placed.name in joints:  # MuJoCo requires unique names; `check` reports duplicates
@@ -99,11 +99,11 @@ def placed_joint(joint: Joint, frames: Frames, pose: Transform, path: str) -> Pl
     Args:
         joint: the parsed joint.
         frames: the frames of the enclosing model or world.
-        pose: the pose of their origin in the world.
+        pose: the pose in the world of the origin of `frames`.
         path: the name of the model, with its enclosing models; empty for the world.
 
     Raises:
-        FrameError: its pose, or a link that it connects, refers to a frame that does not exist.
+        FrameError: the pose of the joint, or one of its links, refers to a frame that does not exist.
     """
     ends = [frames.link(end) for end in (joint.parent, joint.child)]
     parent, child = (end if end == WORLD else _within(path, end) for end in ends)
@@ -118,9 +118,9 @@ def _within(path: str, name: str) -> str:
 
 
 def _direction(axis: Vector3) -> Vector3:
-    """Return the direction of an axis, z by default as in libsdformat.
+    """Return the direction of an axis; the z axis, as in libsdformat, if the direction is zero.
 
-    `check` reports a missing direction.
+    `check` reports a zero direction.
     """
     return axis if sum(value * value for value in axis) > _LEAST**2 else (0.0, 0.0, 1.0)
 
@@ -131,7 +131,7 @@ def _trees(links: dict[str, PlacedLink], joints: Iterable[PlacedJoint]) -> Struc
     held: dict[str, list[str]] = {}
     for joint in joints:
         is_taken = joint.child in holding or is_below(holding, joint.child, joint.parent)
-        if is_taken or joint.joint.type == "gearbox":  # a gearbox couples joints, and does not hold a link
+        if is_taken or joint.joint.type == "gearbox":  # A gearbox couples joints and is not a parent joint.
             loops.append(joint)
         else:
             holding[joint.child] = joint
@@ -144,7 +144,10 @@ def _trees(links: dict[str, PlacedLink], joints: Iterable[PlacedJoint]) -> Struc
 
 
 def is_below(holding: Mapping[str, PlacedJoint], link: str, other: str) -> bool:
-    """Return whether a link is another link or its descendant; `holding` maps child links to their joints."""
+    """Return whether `other` is `link` or one of its descendants.
+
+    `holding` maps child links to their joints.
+    """
     while other != link:
         if other not in holding:
             return False

@@ -1,4 +1,4 @@
-"""Surfaces of shapes: friction, stiffness, and which shape's parameters count in a contact.
+"""Surfaces of shapes: friction, stiffness, and the priority of their parameters in contacts.
 
 Source of the figures: measurements with MuJoCo 4.0 of a robot with differential drive (straight on, arcs, turns on the
 spot), and the chapters "Contact" and "Solver parameters" of MuJoCo's documentation.
@@ -28,8 +28,9 @@ _HARD_IMPEDANCE = (0.99, 0.999, 0.001, 0.5, 2.0)
 def apply_surface(geom: Any, surface: Surface) -> None:
     """Apply the surface of a collision to a geom of MuJoCo.
 
-    Gazebo uses the lower of two frictions; MuJoCo uses the higher one, unless one of the two shapes has priority. Lower
-    friction therefore gets a higher priority, which has the same effect.
+    In a contact, Gazebo uses the lower of the two frictions. MuJoCo uses the higher one, unless one of the two geoms
+    has priority. A geom with lower friction therefore gets a higher priority, which has the same effect as in
+    Gazebo.
     """
     mu = friction_of(surface)
     geom.friction = [min(max(mu, _LEAST), _GREATEST), *geom.friction[1:]]
@@ -46,7 +47,7 @@ def apply_surface(geom: Any, surface: Surface) -> None:
 
 
 def friction_of(surface: Surface) -> float:
-    """Return the coefficient of friction, the lower of two.
+    """Return the lower of the two coefficients of friction of a surface, or the default.
 
     MuJoCo's friction is the same in all directions.
     """
@@ -56,9 +57,9 @@ def friction_of(surface: Surface) -> float:
 
 
 def grip_of(surface: Surface) -> float:
-    """Return the coefficient of friction of a driven wheel, the higher of two.
+    """Return the higher of the two coefficients of friction of a surface, for a driven wheel.
 
-    The lower one is for side slip.
+    The lower coefficient is meant for side slip.
     """
     if surface.friction is not None:
         return max(surface.friction.mu, surface.friction.mu2, 0.0)
@@ -66,14 +67,14 @@ def grip_of(surface: Surface) -> float:
 
 
 def make_slippery(geom: Any) -> None:
-    """Make a geom frictionless and soft, which leaves the load to other geoms, as casters should."""
+    """Make a geom frictionless and soft, so that, like a caster, it leaves the load to other geoms."""
     geom.condim = 1
     make_soft(geom)
     geom.priority = _priority(0.0)
 
 
 def make_frictionless(geom: Any, step: float) -> None:
-    """Make a geom frictionless, and let it bear load as a wheel does.
+    """Make a geom frictionless and hard, so that it bears load as a wheel does.
 
     Args:
         geom: the geom.
@@ -85,12 +86,14 @@ def make_frictionless(geom: Any, step: float) -> None:
 
 
 def make_soft(geom: Any) -> None:
-    """Make the contact of a geom slightly soft, so that it does not take the load from adjacent wheels."""
+    """Make the contact of a geom slightly soft, so that adjacent wheels bear the load."""
     geom.solref = list(_SOFT)
 
 
 def make_wheel(geom: Any, step: float, grip: float | None = None) -> None:
-    """Let a geom roll without slipping: a hard contact, with priority over a ground of equal friction.
+    """Make the contact of a geom hard, with priority over a ground of equal friction.
+
+    The geom then rolls without slipping.
 
     Args:
         geom: the geom.
@@ -112,7 +115,7 @@ def _priority(mu: float) -> int:
 def _patch(surface: Surface) -> float:
     """Return the radius of the contact patch in m.
 
-    MuJoCo's coefficient of torsional friction is a length; SDF's coefficient is multiplied by this radius.
+    MuJoCo's coefficient of torsional friction is a length: SDF's coefficient multiplied by this radius.
     """
     torsional = surface.torsional
     assert torsional is not None

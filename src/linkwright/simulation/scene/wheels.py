@@ -1,4 +1,4 @@
-"""Driven wheels, and casters."""
+"""Contact properties of driven wheels and casters."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ def make_rolling(spec: Any, body: Any, joint: Any, step: float, grips: Mapping[s
 
     Args:
         spec: the specification.
-        body: its body.
+        body: the body of the wheel.
         joint: the joint of the specification that turns the body.
         step: the time step of the simulation in s.
-        grips: the friction of geoms that grip, by their names; other geoms keep their friction.
+        grips: the friction of the geoms that roll, by name; other geoms remain unchanged.
         greatest: the maximum friction.
     """
     kinds = load_mujoco().mjtGeom
@@ -55,11 +55,12 @@ def make_rolling(spec: Any, body: Any, joint: Any, step: float, grips: Mapping[s
 
 
 def make_sliding(body: Any, unspecified: set[str]) -> None:
-    """Let the spheres of a body without a motor leave the load to the wheels.
+    """Make the spheres of a body without a motor leave the load to the wheels.
 
     Args:
         body: a body of the specification.
-        unspecified: names of the geoms whose friction is not specified: they slide, the others only become soft.
+        unspecified: names of the geoms whose friction is not specified. These geoms become frictionless, while the
+            others only become soft.
     """
     for geom in body.geoms:
         if geom.group == COLLISION_GROUP and geom.type == load_mujoco().mjtGeom.mjGEOM_SPHERE:
@@ -70,7 +71,7 @@ def make_sliding(body: Any, unspecified: set[str]) -> None:
 
 
 def make_omnidirectional(body: Any, step: float) -> None:
-    """Let the collisions of a body slide in all directions and bear load, as a wheel with rollers does.
+    """Make the collisions of a body frictionless but hard, as for a wheel with rollers.
 
     Args:
         body: a body of the specification.
@@ -82,7 +83,7 @@ def make_omnidirectional(body: Any, step: float) -> None:
 
 
 def _round_mesh(spec: Any, geom: Any, origin: Array, axis: Array) -> None:
-    """Replace a mesh by an ellipsoid if it is round about an axis, which is given in the frame of its body."""
+    """Replace a mesh by an ellipsoid if the mesh is round about an axis in the frame of its body."""
     w, x, y, z = geom.quat
     corners = np.array(spec.mesh(geom.meshname).uservert).reshape(-1, 3)
     corners = corners @ rotation_matrix((x, y, z, w)).T + np.array(geom.pos) - origin

@@ -38,7 +38,7 @@ _LEAST_AREA = 1e-15
 
 
 def textured_mesh(shape: Shape) -> Triangles | None:
-    """Return a shape as a mesh with texture coordinates, or None if it cannot have any.
+    """Return a shape as a mesh with texture coordinates, or None for an unsupported or empty shape.
 
     A plane has the size of its visual, and z as its normal.
     """
@@ -56,7 +56,7 @@ def textured_mesh(shape: Shape) -> Triangles | None:
         case Sphere(radius) if radius > 0:
             downs = [down / _DOWN for down in reversed(range(_DOWN + 1))]
             upright = _rings([(radius * sin(down * pi), radius * cos(down * pi), down) for down in downs])
-            faces = upright.indices.reshape(-1, 3)[:, ::-1]  # exchanging axes mirrors the image
+            faces = upright.indices.reshape(-1, 3)[:, ::-1]  # Exchanging two axes reverses the winding.
             return replace(upright, positions=upright.positions[:, [0, 2, 1]], indices=faces.ravel())
     return None
 
@@ -65,8 +65,8 @@ def _sheet(side: Array, count: int) -> Triangles:
     """Return a rectangle as a mesh.
 
     Args:
-        side: the position of its centre, and from there the vectors to its right and upper edges, shape (3, 3).
-        count: the number of squares into which it is divided in each direction.
+        side: the position of the centre, and the vectors from there to the right and upper edges, shape (3, 3).
+        count: the number of squares into which the rectangle is divided in each direction.
     """
     share = np.linspace(0.0, 1.0, count + 1)
     down, right = (array.reshape(-1, 1) for array in np.meshgrid(share, share, indexing="ij"))
@@ -76,7 +76,7 @@ def _sheet(side: Array, count: int) -> Triangles:
 
 
 def _rings(rings: Sequence[tuple[float, float, float]]) -> Triangles:
-    """Return a solid of revolution about z.
+    """Return a solid of revolution about z as a mesh.
 
     `rings` has the radius, height and texture row of each ring, from the top.
     """
@@ -88,7 +88,7 @@ def _rings(rings: Sequence[tuple[float, float, float]]) -> Triangles:
 
 
 def _woven(positions: Array, coordinates: Array, columns: int) -> Triangles:
-    """Return the triangles between rows of vertices, without degenerate ones."""
+    """Return the mesh of the triangles between rows of vertices, without degenerate triangles."""
     start = np.arange(len(positions) - columns - 1).reshape(-1, columns + 1)[:, :-1].ravel()
     below = start + columns + 1
     faces = np.concatenate([np.stack([start, below, start + 1], 1), np.stack([start + 1, below, below + 1], 1)])

@@ -1,1 +1,1 @@
-"""Sensors without ROS, which measure when they are asked to."""
+"""Sensor models without ROS, which measure on request."""

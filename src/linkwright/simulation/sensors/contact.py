@@ -39,7 +39,7 @@ class Contact:
 
 
 class ContactSensor:
-    """Measures the contacts of a link's collisions.
+    """A sensor for the contacts of a link's collisions.
 
     Args:
         mount: the mount on the link.

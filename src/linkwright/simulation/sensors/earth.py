@@ -33,7 +33,7 @@ EARTH_FIELD: Vector3 = (5.5645e-6, 22.8758e-6, -42.3884e-6)
 
 
 class Globe:
-    """The position of a world on earth.
+    """The position and heading of a world on earth.
 
     Args:
         place: the coordinates of the world; None for latitude and longitude 0.
@@ -53,14 +53,14 @@ class Globe:
         )
 
     def east_north_up(self, vector: Array) -> Array:
-        """Express a vector of the world in the axes east, north and up."""
+        """Return a vector, given in the axes of the world, in the axes east, north and up."""
         turned: Array = self._heading @ vector
         return turned
 
     def geodetic(self, point: Array) -> tuple[float, float, float]:
-        """Return the geodetic coordinates of a world point in m.
+        """Return latitude and longitude in degrees, and altitude in m, of a point in the world in m.
 
-        They are latitude and longitude in degrees, and altitude above the ellipsoid in m.
+        The altitude is measured from the ellipsoid.
         """
         x, y, z = self._origin + self._axes @ self.east_north_up(point)
         across = hypot(x, y)
@@ -74,7 +74,7 @@ class Globe:
 
 
 def _from_geodetic(latitude: float, longitude: float, altitude: float) -> Array:
-    """Return a geodetic position in earth-centred coordinates, in m."""
+    """Return a position in earth-centred coordinates, in m; angles are in rad."""
     normal = _RADIUS / sqrt(1 - _E2 * sin(latitude) ** 2)
     across = (normal + altitude) * cos(latitude)
     return np.array([across * cos(longitude), across * sin(longitude), (normal * (1 - _E2) + altitude) * sin(latitude)])
@@ -85,7 +85,7 @@ class Fix:
     """A measurement of a satellite receiver.
 
     Attributes:
-        latitude, longitude: in degrees.
+        latitude, longitude: the geodetic position, in degrees.
         altitude: the altitude above the ellipsoid, in m.
         velocity: the velocity east, north and up, in m/s, shape (3,).
     """
@@ -97,13 +97,13 @@ class Fix:
 
 
 class NavsatSensor:
-    """A satellite receiver; noise in metres is added before degrees are computed.
+    """A satellite receiver, whose position noise in m is added in the world before conversion.
 
     Args:
         mount: the mount of the sensor.
         navsat: the parsed sensor; None for no noise.
         place: the position of the world on earth.
-        generator: the source of its noise.
+        generator: the source of the noise.
     """
 
     def __init__(
@@ -138,7 +138,7 @@ class AltimeterSensor:
     Args:
         mount: the mount of the sensor.
         altimeter: the parsed sensor; None for no noise.
-        generator: the source of its noise.
+        generator: the source of the noise.
     """
 
     def __init__(self, mount: Mount, altimeter: Altimeter | None, generator: np.random.Generator) -> None:
@@ -164,8 +164,8 @@ class Barometer:
 
     Args:
         mount: the mount of the sensor.
-        said: the altitude of the world's origin, and noise in Pa; None for sea level and no noise.
-        generator: the source of its noise.
+        settings: the altitude of the world's origin, and noise in Pa; None for sea level and no noise.
+        generator: the source of the noise.
 
     Attributes:
         noise: the noise of the pressure.
@@ -178,7 +178,7 @@ class Barometer:
         self._altitude = settings.reference_altitude
 
     def measure(self) -> float:
-        """Return the pressure in Pa.
+        """Return the air pressure in Pa, with noise.
 
         Raises:
             KeyError: the link no longer exists.
@@ -201,7 +201,7 @@ class MagnetometerSensor:
         mount: the mount of the sensor.
         noise: the noise on each axis, in tesla; None for no noise.
         field: the magnetic field of the world in tesla, in the axes of the world.
-        generator: the source of its noise.
+        generator: the source of the noise.
     """
 
     def __init__(
@@ -212,7 +212,7 @@ class MagnetometerSensor:
         self._field = np.array(field)
 
     def measure(self) -> Array:
-        """Return the magnetic field in tesla, shape (3,).
+        """Return the magnetic field in tesla in the axes of the sensor, shape (3,).
 
         Raises:
             KeyError: the link no longer exists.

@@ -13,14 +13,14 @@ from linkwright.simulation.simulation import Simulation
 
 
 class ForceTorqueSensor:
-    """Measures the force and torque between the two links of a joint, at the origin of the joint.
+    """A sensor for the force and torque between the links of a joint, at the origin of the joint.
 
     Args:
         simulation: the simulation of the world.
-        joint: the name of the joint in the world; it may be fixed.
+        joint: the name of the joint in the world; the joint may be fixed.
         sensor: the parsed sensor; None for SDF's defaults.
         offset: the pose of the sensor in the frame of the joint.
-        generator: the source of its noise.
+        generator: the source of the noise.
 
     Raises:
         KeyError: there is no such joint.
@@ -47,7 +47,8 @@ class ForceTorqueSensor:
     def measure(self) -> tuple[Array, Array]:
         """Return the force in N and the torque in N m, in the axes for which the sensor is configured.
 
-        With ``parent_to_child`` they act from the parent on the child, otherwise from the child on the parent.
+        With ``parent_to_child``, force and torque act from the parent on the child, otherwise from the child on the
+        parent.
 
         Raises:
             KeyError: the links no longer exist.
@@ -65,7 +66,10 @@ class ForceTorqueSensor:
         return self._force_noise.apply(rotate(into, force)), self._torque_noise.apply(rotate(into, torque))
 
     def _axes(self, joint: Transform) -> tuple[float, ...]:
-        """Return the orientation in the world of the frame in which the sensor measures."""
+        """Return the orientation in the world of the configured measurement frame, as a quaternion.
+
+        `joint` is the current pose of the joint.
+        """
         if self._settings.frame == "parent":
             parent = self._joint.parent
             return (0.0, 0.0, 0.0, 1.0) if parent == "world" else self._simulation.link_pose(parent)[3:]

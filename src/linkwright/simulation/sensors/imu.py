@@ -30,7 +30,7 @@ class Inertial:
     Attributes:
         orientation: the orientation of the IMU in its reference frame, a quaternion x, y, z, w.
         angular_velocity: the angular velocity in rad/s.
-        linear_acceleration: the proper acceleration in m/s2; at rest it is the reaction to gravity.
+        linear_acceleration: the proper acceleration in m/s2, which at rest is the reaction to gravity.
     """
 
     orientation: Quaternion
@@ -41,13 +41,14 @@ class Inertial:
 class ImuSensor:
     """An inertial measurement unit.
 
-    The acceleration is that of the last step, and contains the reaction to gravity, as REP 145 defines for raw data.
+    The measured acceleration is the acceleration in the last step, including the reaction to gravity, as REP 145
+    defines for raw data.
 
     Args:
         mount: the mount of the sensor.
         imu: the parsed sensor; None for no noise.
         initial_reference: whether the orientation is relative to the initial orientation instead of the world.
-        generator: the source of its noise.
+        generator: the source of the noise.
     """
 
     def __init__(
@@ -61,14 +62,14 @@ class ImuSensor:
         self._reference = self._start(settings, initial_reference=initial_reference)
 
     def _start(self, imu: Imu, *, initial_reference: bool) -> Quaternion:
-        """Return the orientation of the reference frame in the world."""
+        """Return the orientation in the world of the reference frame, as a quaternion."""
         if initial_reference:
             return self._mount.pose()[3:]
         turns = {"NED": _NED, "NWU": _NWU, "CUSTOM": imu.custom_rpy}
         return quaternion_from_rpy(turns.get(imu.localization, (0.0, 0.0, 0.0)))
 
     def measure(self) -> Inertial:
-        """Return a current measurement.
+        """Return the current orientation, angular velocity and acceleration, with noise.
 
         Raises:
             KeyError: the link no longer exists.

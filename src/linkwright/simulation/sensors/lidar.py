@@ -1,7 +1,7 @@
 """Lidars: ranges and intensities by ray casting.
 
-Sources besides SDF: REP 117 for ranges that are too small or too large; `RaySensor` and `GpuRaySensor` of Gazebo for
-the start of rays at the minimum range, so that the housing of a sensor does not hide the world.
+Sources other than SDF: REP 117 for ranges that are too small or too large; `RaySensor` and `GpuRaySensor` of Gazebo for
+the start of rays at the minimum range, so that the housing of a sensor does not occlude the world.
 """
 
 from __future__ import annotations
@@ -51,13 +51,13 @@ class LidarSensor:
     """A lidar, which looks along x; horizontal angles are about z, and vertical angles are positive upwards.
 
     Ranges are exact except for noise: as in Gazebo, the range resolution does not round them. The lidar's own link does
-    not hide anything, nor do other parts of its robot that are nearer than the minimum range.
+    not occlude anything, nor do other parts of its robot that are nearer than the minimum range.
 
     Args:
-        mount: its place in the world.
+        mount: the mount of the sensor.
         lidar: the parsed lidar.
-        sees_visuals: whether it sees visuals, as a GPU lidar does, instead of collisions.
-        generator: the source of its noise.
+        sees_visuals: whether the lidar detects visuals, as a GPU lidar does, instead of collisions.
+        generator: the source of the noise.
     """
 
     def __init__(self, mount: Mount, lidar: Lidar, *, sees_visuals: bool, generator: np.random.Generator) -> None:
@@ -83,7 +83,7 @@ class LidarSensor:
         return rays
 
     def measure(self) -> Scan:
-        """Return a current measurement.
+        """Return the current ranges and intensities, with noise.
 
         Raises:
             KeyError: the link no longer exists.
@@ -113,7 +113,10 @@ class LidarSensor:
         return ranges, geoms
 
     def _beyond(self, origin: Array, ray: Array, body: int, reached: float, own: Array) -> tuple[float, int]:
-        """Return the distance and geom of the first hit behind parts of the robot that are nearer than the range."""
+        """Return the distance in m and the geom of a ray's first hit behind near parts of the robot.
+
+        The distance is inf, and the geom -1, if there is no such hit.
+        """
         simulation, geom = self._simulation, np.zeros(1, dtype=np.int32)
         for _ in range(_SURFACES):
             start = reached + _A_LITTLE

@@ -40,7 +40,7 @@ class Mount:
 
     @property
     def body(self) -> int:
-        """The index of the link in MuJoCo's current model."""
+        """The index of the link's body in MuJoCo's current model."""
         return self.simulation.body(self.link)
 
     def pose(self) -> Transform:
@@ -69,13 +69,13 @@ class Mount:
         return self.offset[:3] == IDENTITY[:3]
 
     def _arm(self) -> Vector3:
-        """Return the vector from the origin of the link to the sensor, in the axes of the world."""
+        """Return the vector from the origin of the link to the sensor, in the axes of the world, in m."""
         return rotate(self.simulation.link_pose(self.link)[3:], self.offset[:3])
 
     def inertial_motion(self) -> tuple[Vector3, Vector3]:
-        """Return the angular velocity in rad/s and the proper acceleration in m/s2, in the axes of the world.
+        """Return the angular velocity in rad/s and the proper acceleration in m/s2, in world axes.
 
-        The proper acceleration of an accelerometer at rest is the reaction to gravity, upwards.
+        The proper acceleration at rest is the reaction to gravity, which points upwards.
         """
         accelerations(self.simulation)
         simulation, mujoco, result = self.simulation, load_mujoco(), np.zeros(6)
@@ -95,13 +95,13 @@ def _three(values: Array) -> Vector3:
 
 
 def accelerations(simulation: Simulation) -> None:
-    """Compute the accelerations of all bodies and the forces between them for the last step."""
+    """Update the accelerations of all bodies and the forces between them in MuJoCo's data."""
     simulation.refresh()
     load_mujoco().mj_rnePostConstraint(simulation.model, simulation.data)
 
 
 def part_of(geom: str) -> str:
-    """Return the name of the visual or collision of a MuJoCo geom.
+    """Return the name of the visual or collision to which a MuJoCo geom belongs.
 
     An example is ``robot::base_link::lid#visual``.
     """
@@ -110,7 +110,7 @@ def part_of(geom: str) -> str:
 
 
 def parts_of(simulation: Simulation) -> Iterator[tuple[str, Visual | Collision]]:
-    """Yield all visuals and collisions of a world with their names, as `part_of` returns them."""
+    """Yield the visuals and collisions of all models, with their names in the form of `part_of`."""
     for model in simulation.scene.models.values():
         for held in model.structure.links:
             link = held.link
@@ -121,11 +121,11 @@ def parts_of(simulation: Simulation) -> Iterator[tuple[str, Visual | Collision]]
 
 
 class GeomTable:
-    """A value for each geom of MuJoCo's model, updated after models were added or removed.
+    """A table with a value for each geom of MuJoCo's model, updated when the model is rebuilt.
 
     Args:
         simulation: the simulation of the world.
-        values: returns all values, for the names of the geoms in their order.
+        values: returns the values for a list of geom names, in the order of the names.
     """
 
     def __init__(self, simulation: Simulation, values: Any) -> None:
@@ -135,7 +135,10 @@ class GeomTable:
         self._array: Array = np.zeros(0)
 
     def array(self) -> Array:
-        """Return the values, shape (geoms + 1,); the last one is 0, for the index -1, which means no geom."""
+        """Return the values by geom index, shape (geoms + 1,).
+
+        The last value is 0, so that the index -1, which means no geom, has the value 0.
+        """
         self._simulation.refresh()
         if self._revision != self._simulation.revision:
             model = self._simulation.model

@@ -19,7 +19,7 @@ _AHEAD = 64
 
 
 class NoiseSource:
-    """Adds noise to one value, or to many of the same kind.
+    """A source of noise for one value, or for many values of the same kind.
 
     Args:
         noise: the parsed noise, in the unit of the values.
@@ -46,7 +46,7 @@ class NoiseSource:
 
     @property
     def white(self) -> bool:
-        """Whether the noise is Gaussian with a constant offset, and nothing else."""
+        """Whether the noise is purely Gaussian, apart from a constant offset."""
         noise = self._noise
         return noise.type == "gaussian" and not noise.dynamic_bias_stddev and noise.stddev > 0
 
@@ -56,11 +56,11 @@ class NoiseSource:
         return 0.0 if self.silent else float(self._bias + self._noise.mean)
 
     def apply(self, values: Array, period: float = 0.0) -> Array:
-        """Add noise to values.
+        """Return values with noise added.
 
         Args:
             values: an array of any shape.
-            period: seconds since the last call, in which the bias may have drifted.
+            period: the seconds since the last call, in which the bias may have drifted.
         """
         noise = self._noise
         if self.silent:
@@ -109,15 +109,15 @@ class VectorNoise:
     def on(self, vector: Vector3, period: float = 0.0) -> Vector3:
         """Return a vector with noise added.
 
-        It is computed with plain floats, which are faster than arrays for three numbers.
+        The computation uses plain floats, which are faster than arrays for three numbers.
 
         Args:
             vector: the components of the vector.
-            period: seconds since the last call, in which a bias may have drifted.
+            period: the seconds since the last call, in which a bias may have drifted.
         """
         if self._silent:
             return vector
-        if self._white:  # drawing many numbers together takes hardly longer than drawing three
+        if self._white:  # Drawing many numbers takes hardly longer than drawing three.
             if not self._drawn:
                 self._drawn = self._generator.standard_normal((_AHEAD, 3)).tolist()
             (x, y, z), (a, b, c) = vector, self._drawn.pop()

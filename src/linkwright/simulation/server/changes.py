@@ -25,11 +25,11 @@ class AddedModel:
 
     Attributes:
         model: the model, with its includes resolved.
-        name: its name.
-        pose: the initial pose of its frame in the world.
-        namespace: the default namespace for the nodes of its plugins.
-        motion: the motion of the model that it replaces; None if it does not replace one.
-        here: whether it continues at the pose of the model that it replaces.
+        name: the name of the model in the world.
+        pose: the initial pose of the model's frame in the world.
+        namespace: the default namespace for the nodes of the model's plugins.
+        motion: the motion of the replaced model; None if no model is replaced.
+        here: whether the model continues at the pose of the replaced model.
     """
 
     model: Model
@@ -47,7 +47,7 @@ class Changes:
     Attributes:
         gone: names of the removed models.
         moved: the new poses in the world of models that differ only in their pose.
-        renewed: models that differ and replace existing ones of the same names.
+        renewed: changed models that replace the running models of the same names.
         new: the added models.
     """
 
@@ -57,7 +57,7 @@ class Changes:
     new: tuple[AddedModel, ...]
 
     def with_all(self, running: Mapping[str, SceneModel], namespaces: Mapping[str, str]) -> Changes:
-        """Return these changes, with all unchanged models replaced at their current poses."""
+        """Return these changes, but with all other models also replaced, at their current or new poses."""
         others = {*self.gone, *(change.name for change in self.renewed)}
         poses = {name: self.moved.get(name, each.pose) for name, each in running.items() if name not in others}
         rest = (
@@ -67,9 +67,9 @@ class Changes:
         return replace(self, moved={}, renewed=(*self.renewed, *rest))
 
     def with_connected(self, running: Mapping[str, SceneModel], namespaces: Mapping[str, str]) -> Changes:
-        """Return these changes with connected models that moved replaced at their new poses.
+        """Return these changes, but with moved models replaced if joints of the world connect them.
 
-        These are the models that joints of the world connect.
+        The replacements are at the new poses.
         """
         connected = {name for model in running.values() if model.hangs_on for name in (model.name, *model.hangs_on)}
         again = {name: pose for name, pose in self.moved.items() if name in connected}
@@ -96,7 +96,7 @@ def changes_to(world: World, running: Mapping[str, SceneModel], owned: Collectio
     names: set[str] = set()
     for model in world.models:
         if model.name in names:
-            continue  # `check` reports duplicate names
+            continue  # `check` reports duplicate names.
         names.add(model.name)
         try:
             pose = frames.pose(model.name)
@@ -121,13 +121,13 @@ def changes_to(world: World, running: Mapping[str, SceneModel], owned: Collectio
 def check(
     world: World, simulation: Simulation, added: Sequence[AddedModel], finder: ResourceFinder
 ) -> list[Diagnostic]:
-    """Compile models in a separate world to find out whether they can be added to a running simulation.
+    """Compile models in a separate world to check whether a running simulation can add them.
 
     Args:
-        world: the world; its own models are left out.
+        world: the world, whose own models are ignored.
         simulation: the running simulation.
         added: the models to add.
-        finder: the finder of meshes.
+        finder: the finder of mesh files.
 
     Returns:
         The findings on parts that cannot be simulated.
@@ -146,7 +146,7 @@ def add_models(simulation: Simulation, added: Sequence[AddedModel]) -> None:
     """Add models to a simulation, either all or none.
 
     Raises:
-        LinkwrightError: SIM102, there is already a model with such a name; SIM104, SIM105, SIM140, a model cannot be
+        LinkwrightError: SIM102, a model with one of the names already exists; SIM104, SIM105, SIM140, a model cannot be
             simulated.
     """
     came: list[str] = []
@@ -165,7 +165,7 @@ def add_models(simulation: Simulation, added: Sequence[AddedModel]) -> None:
 
 
 def surroundings(world: World) -> tuple[object, ...]:
-    """Return the parts of a world on which plugins of its models depend."""
+    """Return the properties of a world on which the plugins of its models depend, for comparison."""
     physics = physics_of(world)
     joints = tuple(world.joints)
     return world.name, world.spherical_coordinates, world.magnetic_field, world.wind, physics.max_step_size, joints

@@ -1,4 +1,4 @@
-"""Models from URDF or SDF texts that programs send."""
+"""Models that programs send as URDF or SDF."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ _SHAPED = ("visual", "collision")
 
 @dataclass(frozen=True, slots=True)
 class Entity:
-    """A model from a text.
+    """A model that was read from URDF or SDF.
 
     Attributes:
         model: the model, with its includes resolved; every link of a robot is kept.
         diagnostics: findings about the model.
-        unread: the errors that cause its shapes to be missing.
+        unread: the errors because of which shapes of the model are missing.
     """
 
     model: Model
@@ -38,7 +38,7 @@ class Entity:
 
 
 def entity_from(text: str, finder: ResourceFinder, library: DescriptionLibrary) -> Entity:
-    """Read the model in a text.
+    """Return the model that URDF or SDF describes.
 
     Args:
         text: URDF, or SDF whose first model is read.
@@ -46,8 +46,8 @@ def entity_from(text: str, finder: ResourceFinder, library: DescriptionLibrary) 
         library: the robot descriptions that the process has read.
 
     Raises:
-        LinkwrightError: the text is not XML; it is neither URDF nor SDF; SIM142, it does not contain a model; other
-            errors of the text.
+        LinkwrightError: the text is not XML, or is neither URDF nor SDF; SIM142, the text does not contain a model;
+            other errors of the text.
     """
     document, warnings = parse_as_gazebo(text, _NAME)
     if document.root.tag == "robot":
@@ -76,7 +76,7 @@ def entity_from(text: str, finder: ResourceFinder, library: DescriptionLibrary) 
 
 
 def _lacks_shapes(robot: Robot) -> bool:
-    """Return whether a shape of a link is missing or invalid; urdfdom refuses such robots."""
+    """Return whether a visual or collision of a robot could not be read; urdfdom rejects such robots."""
     return any(
         len(link.visuals) + len(link.collisions) < sum(element.tag in _SHAPED for element in link.element.elements())
         for link in robot.links.values()
@@ -85,7 +85,7 @@ def _lacks_shapes(robot: Robot) -> bool:
 
 
 def _unknown_shapes(root: Element) -> Iterator[Diagnostic]:
-    """Yield errors for elements that are used as shapes but that SDF does not define."""
+    """Yield errors for elements in ``<geometry>`` that are not shapes of SDF."""
     for parent in root.walk():
         for geometry in parent.elements("geometry") if parent.tag in _SHAPED else ():
             for shape in geometry.elements():
@@ -102,7 +102,10 @@ def _unknown_shapes(root: Element) -> Iterator[Diagnostic]:
 
 
 def _errors(findings: tuple[Diagnostic, ...] | list[Diagnostic]) -> list[Diagnostic]:
-    """Return the findings that are errors, or all findings if there are no errors."""
+    """Return the findings that are errors, or all findings if none is an error.
+
+    If there are no findings at all, the error SIM142 is returned.
+    """
     return (
         [finding for finding in findings if has_errors([finding])]
         or list(findings)

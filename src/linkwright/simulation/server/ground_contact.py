@@ -1,4 +1,4 @@
-"""Lift models that are spawned inside the ground onto it.
+"""Lifts models that are spawned inside the ground.
 
 Launch files spawn robots at a height of 0 although their origin is above the wheels, or into worlds whose ground is a
 thick plate. Contacts would push such a robot out of the ground within a few steps, fast enough to throw a light one
@@ -18,7 +18,9 @@ _UPWARD = 0.7
 
 
 def stand_up(simulation: Simulation, name: str) -> None:
-    """Lift a model until it does not penetrate static bodies; a fixed model stays in place.
+    """Lift a free model until it no longer penetrates static bodies.
+
+    Very small and very large depths are ignored.
 
     Raises:
         KeyError: there is no such model.
@@ -34,7 +36,7 @@ def stand_up(simulation: Simulation, name: str) -> None:
 
 
 def touches_nothing(simulation: Simulation, name: str) -> list[Diagnostic]:
-    """Return a warning (SIM143) if a model falls and has no collisions, otherwise an empty list.
+    """Return a warning (SIM143) if a free model has no collisions, otherwise an empty list.
 
     Raises:
         KeyError: there is no such model.
@@ -56,7 +58,7 @@ def touches_nothing(simulation: Simulation, name: str) -> list[Diagnostic]:
 
 
 def _depth(simulation: Simulation, name: str) -> float:
-    """Return the height in m by which a model has to be lifted."""
+    """Return the height in m by which a model has to be lifted; 0 if it is not inside the ground."""
     simulation.refresh()
     model, data = simulation.model, simulation.data
     own = {simulation.body(held.link.name) for held in simulation.scene.models[name].structure.links}
@@ -67,7 +69,7 @@ def _depth(simulation: Simulation, name: str) -> float:
         is_own = [body in own for body in bodies]
         if is_own[0] == is_own[1] or model.body_weldid[bodies[is_own.index(False)]] != 0:
             continue
-        up = float(contact.frame[2]) * (1.0 if is_own[1] else -1.0)  # normal from the first geom to the second
+        up = float(contact.frame[2]) * (1.0 if is_own[1] else -1.0)  # The normal points from geom 1 to 2.
         if up > _UPWARD:
             depth = max(depth, -float(contact.dist) / up)
     return depth

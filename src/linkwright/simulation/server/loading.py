@@ -1,9 +1,9 @@
-"""Replace the running world by the world in another file or text, for ``/load_world``.
+"""Replaces the running world by the world in another file or text, for ``/load_world``.
 
-Source: ``simulation_interfaces/srv/LoadWorld``. There the scene is cleared and the simulation stops; here the common
+Source: ``simulation_interfaces/srv/LoadWorld``. There, the scene is cleared and the simulation stops; here, the common
 parts of both worlds, spawned models and the time continue. ``uri`` is the path or address of a file, or the name of a
-world. The original ignores ``resource_string`` if there is a ``uri``; here it is the text of the file before it is
-saved.
+world. The original ignores ``resource_string`` if there is a ``uri``; here, it is the edited text of the file, which
+need not be saved.
 """
 
 from __future__ import annotations
@@ -40,14 +40,14 @@ _TEXT = "<the world>"
 
 
 class WorldLoader:
-    """Replaces the running world by another one.
+    """The loader that replaces the running world.
 
     Args:
         server: the simulation.
-        loaded: the world that it runs at first.
+        loaded: the initial world.
 
     Attributes:
-        loaded: the world that it runs now.
+        loaded: the running world.
     """
 
     def __init__(self, server: SimulationServer, loaded: LoadedWorld) -> None:
@@ -57,7 +57,7 @@ class WorldLoader:
 
     @property
     def is_unsaved(self) -> bool:
-        """Whether the running world is from a text that differs from its file."""
+        """Whether the running world was loaded from a text that differs from the world's file."""
         if self._text is None:
             return False
         path = self.loaded.path
@@ -69,7 +69,7 @@ class WorldLoader:
     def load(self, uri: str, text: str = "", *, refused: Sequence[str] = ()) -> None:
         """Replace the running world by the world in a file or text.
 
-        An error that both worlds share does not prevent the replacement.
+        An error that the running world also has does not prevent the replacement.
 
         Args:
             uri: the file; empty for a text without a file.

@@ -1,4 +1,4 @@
-"""Keep the motion of a model when it is replaced by a changed one."""
+"""Preserves the motion of a model that is replaced by a changed one."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ class Motion:
     """The pose, velocities and joint states of a model.
 
     Attributes:
-        pose: the pose of its frame in the world.
-        linear: the velocity of its first link in m/s, in the axes of the world.
-        angular: the angular velocity of its first link in rad/s, in the axes of the world.
-        joints: the type, positions and velocities of its joints in MuJoCo, by name.
+        pose: the pose of the model's frame in the world.
+        linear: the velocity of the first link in m/s, in the axes of the world.
+        angular: the angular velocity of the first link in rad/s, in the axes of the world.
+        joints: the type, positions and velocities of the model's joints in MuJoCo, by name.
     """
 
     pose: Transform
@@ -43,13 +43,15 @@ def motion_of(simulation: Simulation, name: str) -> Motion:
 
 
 def resume(simulation: Simulation, name: str, motion: Motion, *, here: bool) -> None:
-    """Apply the motion of a model's predecessor of the same name, for joints of unchanged type.
+    """Apply the motion of a replaced model to its successor.
+
+    Joints continue if they exist in both models with the same type.
 
     Args:
         simulation: the simulation of the world.
         name: the name of the model.
-        motion: the motion of the predecessor.
-        here: whether a free model also continues at the pose and velocity of the predecessor.
+        motion: the motion of the replaced model.
+        here: whether a free model also continues at the pose and velocity of the replaced model.
 
     Raises:
         KeyError: there is no such model.
@@ -66,9 +68,9 @@ def resume(simulation: Simulation, name: str, motion: Motion, *, here: bool) -> 
 
 
 def _put(simulation: Simulation, name: str, motion: Motion, free: dict[str, str]) -> None:
-    """Set the poses of all free links.
+    """Set the poses of the free links, and the velocity of the model.
 
-    First and new links follow the frame of the model, the others have poses of their own.
+    The first link and new links follow the frame of the model; other links keep their own poses and velocities.
     """
     model = simulation.scene.models[name]
     poses = {held.link.name: held.link.pose for held in model.structure.links}
@@ -86,7 +88,7 @@ def _put(simulation: Simulation, name: str, motion: Motion, free: dict[str, str]
 
 
 def _joints(simulation: Simulation, name: str) -> dict[str, int]:
-    """Return MuJoCo's joints of a model with their indices."""
+    """Return the indices of a model's joints in MuJoCo's model, by name."""
     simulation.refresh()
     model, found = simulation.model, {}
     for held in simulation.scene.models[name].structure.links:

@@ -1,4 +1,4 @@
-"""Findings on models that overlap at the start: SIM144. They are not thrown apart; see `simulation.recovery`."""
+"""Findings on bodies that overlap at the start (SIM144), which `simulation.recovery` separates."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _MOST = 8
 
 
 def overlaps(simulation: Simulation, names: Container[str] | None = None) -> list[Diagnostic]:
-    """Return warnings about bodies that currently overlap, the deepest overlap first.
+    """Return warnings (SIM144) about bodies that currently overlap, the deepest overlap first.
 
     Args:
         simulation: the simulation of the world.
@@ -47,7 +47,7 @@ def overlaps(simulation: Simulation, names: Container[str] | None = None) -> lis
 
 
 def _moving_first(simulation: Simulation, links: Iterable[str]) -> list[str]:
-    """Return two links with a moving one first."""
+    """Return links with those that can move first."""
     return sorted(links, key=lambda link: int(simulation.model.body_weldid[simulation.body(link)]) == 0)
 
 

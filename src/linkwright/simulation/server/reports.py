@@ -40,7 +40,7 @@ class Reports:
     Args:
         server: the simulation.
         topics: the topics of the simulator's node.
-        clock_rate: how often the time is published per simulated second.
+        clock_rate: the rate of ``/clock`` in simulated time, in Hz; 0 for every step.
     """
 
     def __init__(self, server: SimulationServer, topics: SteppedNode, clock_rate: float) -> None:
@@ -54,7 +54,7 @@ class Reports:
         self._bodies: NDArray[np.intp] = np.zeros(0, dtype=np.intp)
         self._revision = -1
         self._finder: ResourceFinder | None = None
-        self._written: dict[tuple[int, str, Transform], tuple[Model, WrittenModel]] = {}  # models keep their ids valid
+        self._written: dict[tuple[int, str, Transform], tuple[Model, WrittenModel]] = {}  # stored models keep their ids
         self._posed = self._measured = 0.0
         server.on_reset.append(self._publish_time)
         server.simulation.call_every(
@@ -62,7 +62,7 @@ class Reports:
         )
 
     def begin(self) -> None:
-        """Publish the description, now and after each change of the world."""
+        """Publish the description of the world, and publish it again after each change."""
         self._server.on_change.append(self.publish_description)
         self.publish_description()
 
@@ -71,7 +71,7 @@ class Reports:
         self._state.publish(get_message(_STATE)(state=PAUSED if paused else PLAYING))
 
     def publish_description(self) -> None:
-        """Publish the world as SDF, with all models at their initial poses and with absolute file addresses."""
+        """Publish the world as SDF, with models at their initial poses and absolute file addresses."""
         simulation = self._server.simulation
         if self._finder is not simulation.finder:
             self._finder, self._written = simulation.finder, {}
@@ -83,10 +83,7 @@ class Reports:
         self._description.publish(String(data=text))
 
     def _saved(self, model: Model, name: str, pose: Transform) -> tuple[Model, WrittenModel]:
-        """Return a model of the description.
-
-        Its text is only written again if the model or its pose has changed.
-        """
+        """Return a model and its SDF, which is reused if the model and its pose are unchanged."""
         known = self._written.get((id(model), name, pose))
         if known is not None:
             return known
@@ -98,7 +95,10 @@ class Reports:
         return addressed
 
     def watch(self, factor: Callable[[], float]) -> None:
-        """Publish poses and the real-time factor at the configured rate in real time, while they have subscribers."""
+        """Publish poses and the real-time factor if their topics have subscribers.
+
+        The rates are 30 Hz and 2 Hz of real time, provided that this is called often enough.
+        """
         now = time.monotonic()
         if now - self._posed >= _POSES_PERIOD and self._poses.is_wanted:
             self._posed = now
@@ -111,7 +111,7 @@ class Reports:
             self._metrics.publish(message)
 
     def publish_poses(self) -> None:
-        """Publish the poses of all links that can move: ``robot::link`` in ``world``."""
+        """Publish the poses of all links that can move; the pose of ``robot::link`` is in ``world``."""
         simulation = self._server.simulation
         simulation.refresh()
         if self._revision != simulation.revision:

@@ -1,4 +1,4 @@
-"""The thread that runs a simulation next to the event loop."""
+"""The thread that runs a simulation in parallel with the event loop."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ _MEASURED = 0.5
 class Runner:
     """Advances a simulation in a separate thread, at the requested real-time factor.
 
-    Everything except `start` and `close` is called in that thread, through commands of the exchange.
+    All methods except `start` and `close` are called in that thread, through commands of the exchange.
 
     Args:
         server: the simulation.
         factor: simulated seconds per real second; infinite for as fast as possible, 0 for the factor of the world.
         paused: whether the simulation starts paused.
-        seconds: the simulated seconds after which it ends; None for never.
+        seconds: the simulated seconds after which the simulation ends; None for never.
         watch: called in the thread at short intervals, even while the simulation is paused.
         on_state: called in the thread when the simulation was paused or resumed.
         on_end: called in the thread with 0 after `seconds`, or with 1 after a failure.
@@ -69,11 +69,11 @@ class Runner:
         self._thread = threading.Thread(target=self._run, name="linkwright-simulation", daemon=True)
 
     def start(self) -> None:
-        """Start the thread."""
+        """Start the simulation's thread."""
         self._thread.start()
 
     def close(self) -> None:
-        """End the thread after the current step."""
+        """End the thread after the current step, and wait for its end."""
         self._ends = True
         self._server.exchange.close()
         if self._thread.is_alive() and self._thread is not threading.current_thread():
@@ -123,7 +123,10 @@ class Runner:
                 exchange.has_commands.wait(wait)
 
     def _safely(self, work: Callable[[], object]) -> None:
-        """Call a function; an error is logged and pauses the simulation, which can then be reset."""
+        """Call a function; if it raises an error, log the error and pause the simulation.
+
+        The simulation can then be reset.
+        """
         run_logged(self._server.node.get_logger(), "the simulation", lambda: self._try(work))
 
     def _try(self, work: Callable[[], object]) -> None:
@@ -162,7 +165,10 @@ class Runner:
                 self._on_end(0)
 
     def _ahead(self) -> float:
-        """Return the real seconds to wait until real time has caught up with simulated time."""
+        """Return the real seconds until real time reaches simulated time; 0 or less if there is none.
+
+        A simulation that is too far behind is not required to catch up.
+        """
         if self._factor == inf:
             return 0.0
         real, simulated = self._began

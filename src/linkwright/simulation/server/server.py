@@ -1,4 +1,4 @@
-"""A simulation with its plugins in a graph."""
+"""A simulation whose plugins are connected to a graph."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class ServerOptions:
         usual_names: whether topics of gz, such as ``/model/robot/cmd_vel``, also have their usual names, such as
             ``/cmd_vel`` for the first robot that has this topic.
         gazebo_mistakes: whether plugins reproduce known mistakes of Gazebo.
-        systems: the plugins for a world that does not name any.
+        systems: the default plugins of a world that does not declare any.
     """
 
     seed: int = 0
@@ -67,7 +67,7 @@ class ServerOptions:
 
 
 class SimulationServer:
-    """A simulation with its plugins in a graph.
+    """A simulation whose plugins are connected to a graph.
 
     All methods must be called in the thread that advances the simulation, which may be any thread.
 
@@ -79,7 +79,7 @@ class SimulationServer:
     Attributes:
         simulation: the simulation of the world.
         node: the node of the simulator.
-        exchange: passes messages to the graph, and commands from there.
+        exchange: passes messages to the graph, and commands from the graph to the simulation's thread.
         on_change: called after models were added or removed.
         on_reset: called after a reset.
         on_findings: called after `findings` have changed.
@@ -113,7 +113,7 @@ class SimulationServer:
         self._load(_WORLD, world_plugins(self.simulation.world, self._options.systems), "")
         for scene_model in tuple(self.simulation.scene.models.values()):
             self._load(scene_model.name, model_plugins(self.simulation.world, scene_model.model, scene_model.name), "")
-        self.report(overlaps(self.simulation))  # only now, because plugins attach models that are meant to overlap
+        self.report(overlaps(self.simulation))  # after the plugins have attached models
         self._changed()
 
     @property
@@ -139,9 +139,9 @@ class SimulationServer:
 
         Args:
             model: the model, with its includes resolved.
-            name: its name.
-            pose: the pose of its frame in the world; a model inside the ground is lifted onto it.
-            namespace: the default namespace for the nodes of its plugins.
+            name: the name of the model in the world.
+            pose: the pose of the model's frame in the world; a model inside the ground is lifted onto it.
+            namespace: the default namespace for the nodes of the model's plugins.
 
         Raises:
             LinkwrightError: SIM102, there is already a model with this name; SIM140, the model cannot be placed or
@@ -156,7 +156,7 @@ class SimulationServer:
         self._warn_unsimulated(unsimulated_in(model))
 
     def renew(self, model: Model, name: str) -> None:
-        """Replace a model by a changed one, which keeps its pose, velocity and joint positions.
+        """Replace a model by a changed one, which takes over pose, velocity and joint positions.
 
         Args:
             model: the changed model, with its includes resolved.
@@ -173,13 +173,15 @@ class SimulationServer:
         self.report(touches_nothing(self.simulation, name), name)
 
     def load(self, world: World, finder: ResourceFinder, allow: Callable[[Sequence[Diagnostic]], object]) -> None:
-        """Replace the running world by another one; common parts continue, and spawned models stay.
+        """Replace the running world by another one.
+
+        Parts that both worlds have in common continue, and spawned models remain.
 
         Args:
             world: the other world, with its includes resolved.
-            finder: finds its meshes.
-            allow: called with the findings on parts that cannot be simulated, before anything changes; it may raise an
-                error.
+            finder: the finder of mesh files.
+            allow: called with the findings on parts that cannot be simulated, before anything changes. It may raise an
+                error to prevent the replacement.
 
         Raises:
             LinkwrightError: SIM102, a model has the name of a spawned one; SIM104, SIM140, the world cannot be
@@ -203,9 +205,10 @@ class SimulationServer:
             self._load(_WORLD, world_plugins(wanted, self._options.systems), "")
 
     def _exchange(self, gone: Iterable[str], added: Sequence[AddedModel]) -> None:
-        """Remove models and add others.
+        """Remove the models in `gone`, and add the models in `added`.
 
-        A model replaces one of the same name in its place; connected models are replaced, too.
+        An added model replaces a running model of the same name. Models attached to a removed or replaced model are
+        also replaced.
         """
         simulation = self.simulation
         count = len(simulation.scene.diagnostics)
@@ -231,9 +234,9 @@ class SimulationServer:
         self._changed()
 
     def _hanging_on(self, names: Collection[str]) -> Iterator[AddedModel]:
-        """Yield the models that joints of the world connect to others.
+        """Yield the models to add again because joints of the world attach them to the named models.
 
-        They are to be added again at their current poses.
+        They continue at their current poses.
         """
         models = self.simulation.scene.models
         for name in {item: None for one in names & models.keys() for item in self.simulation.scene.hanging_on(one)}:
@@ -243,7 +246,7 @@ class SimulationServer:
                 yield AddedModel(scene_model.model, name, scene_model.pose, namespace, motion, here=True)
 
     def delete(self, name: str) -> None:
-        """Remove a model after its plugins have ended; models that were connected to it by joints stay.
+        """Stop the plugins of a model, and remove the model; models attached to it by joints remain.
 
         Raises:
             LinkwrightError: SIM141, there is no model with this name.
@@ -259,7 +262,7 @@ class SimulationServer:
         return self.simulation.scene.models[name]
 
     def reset(self) -> None:
-        """Restart with the initial poses, time 0, and the same random numbers."""
+        """Restart at time 0, with the initial poses and the same random numbers."""
         self.simulation.reset()
         for plugin in self._running():
             plugin.node.calls.call(plugin.reset)
@@ -282,7 +285,7 @@ class SimulationServer:
             self.exchange.deliver()
 
     def close(self) -> None:
-        """Close all plugins."""
+        """Stop all plugins of the world and of its models."""
         self._bridged.close()
         self._end(self._running())
         self._plugins.clear()
@@ -314,7 +317,7 @@ class SimulationServer:
     ) -> None:
         """Start the plugins and sensors of a model or world.
 
-        Unchanged ones keep the state of their predecessors.
+        Plugins that are unchanged take over the state of their predecessors in `before`.
         """
         self._plugins[owner] = []
         unknown: dict[str, None] = {}
@@ -356,7 +359,7 @@ class SimulationServer:
         namespace: str,
         before: Sequence[SimulatedPlugin[object]],
     ) -> None:
-        """Start a plugin or sensor, which continues with the state of its predecessor."""
+        """Start a plugin or sensor, and let it resume from an unchanged predecessor in `before`."""
         calls = Calls(lambda error: self._failed(owner, place, error))
         node = self._node(place, namespace, calls)
         made: list[SimulatedPlugin[object]] = []
@@ -380,7 +383,7 @@ class SimulationServer:
             node.close()
 
     def _failed(self, owner: str, place: PluginPlace, error: Exception) -> None:
-        """End a plugin or sensor that raised an error; the others continue."""
+        """Log the error of a plugin or sensor, and end that plugin; the others continue."""
         self._log_failure(place, error)
         running = self._plugins.get(owner, [])
         ended = [simulated_plugin for simulated_plugin in running if simulated_plugin.place is place]
@@ -394,9 +397,12 @@ class SimulationServer:
                 function(error)
 
     def _node(self, place: PluginPlace, namespace: str, calls: Calls) -> PluginNode:
-        """Return the node for a plugin.
+        """Return the node for a plugin or sensor.
 
-        It is the simulator's node for plugins of gz and for sensors without a plugin, otherwise a separate node.
+        Plugins of gz and sensors without a plugin share the simulator's node; other plugins get a separate node.
+
+        Raises:
+            LinkwrightError: SIM135, another plugin has a node with the same name.
         """
         if is_shared(place):
             return PluginNode(
@@ -444,14 +450,17 @@ class SimulationServer:
 
     @contextmanager
     def _logging_failures(self, place: PluginPlace) -> Iterator[None]:
-        """Log the errors of one plugin, so that the others continue."""
+        """Log an error that occurs in the context, so that other plugins are still started."""
         try:
             yield
         except Exception as error:  # noqa: BLE001 - a plugin of any world or package may raise anything
             self._log_failure(place, error)
 
     def report(self, findings: Iterable[Diagnostic], model: str = _WORLD) -> None:
-        """Log a finding once; a finding on a model is in `findings` until the model is removed."""
+        """Log findings, each only once, and add those on a model to `findings`.
+
+        They remain in `findings` until the model is removed.
+        """
         found = list(findings)
         if found and model != _WORLD:
             self._findings.setdefault(model, []).extend(found)
@@ -463,7 +472,7 @@ class SimulationServer:
             self._logged.add(text)
             logger = self.node.get_logger()
             line = f"{text} ({diagnostic.hint})" if diagnostic.hint else text
-            if diagnostic.severity is Severity.ERROR:  # two calls, because a logger identifies its calls by their lines
+            if diagnostic.severity is Severity.ERROR:  # The logger tells calls apart by line.
                 logger.error(line)
             else:
                 logger.warning(line)
@@ -481,12 +490,15 @@ class SimulationServer:
 
 
 def is_shared(place: PluginPlace) -> bool:
-    """Return whether a plugin or sensor uses the simulator's node."""
+    """Return whether a plugin or sensor shares the simulator's node."""
     return place.plugin is None or is_of_gz(place.plugin.filename)
 
 
 def _kinds(place: PluginPlace) -> list[str]:
-    """Return the names of an unknown plugin or sensor; empty for features of the simulation itself."""
+    """Return the library or sensor type that is not simulated, for the log.
+
+    The list is empty for a library whose work the simulation does itself.
+    """
     if place.plugin is None:
         return [] if place.sensor is None else [place.sensor.sensor.type]
     return [] if needs_nothing(place.plugin.filename) else [place.plugin.filename]

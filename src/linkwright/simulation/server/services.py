@@ -1,4 +1,4 @@
-"""The services of a simulator from gazebo_ros and simulation_interfaces.
+"""The services of a simulator, as in gazebo_ros and simulation_interfaces.
 
 Source: gazebo_ros_pkgs for ROS 2 (``gazebo_ros_init``, ``gazebo_ros_factory``, ``gazebo_ros_state``,
 ``gazebo_ros_force_system``) and their messages.
@@ -66,7 +66,7 @@ class Services:
         library: the robot descriptions that the process has read.
 
     Attributes:
-        worlds: replaces the world.
+        worlds: the loader that replaces the world.
         on_spawned: called in the simulation's thread with the name and description of a model from ``/spawn_entity``.
     """
 
@@ -105,13 +105,13 @@ class Services:
     # --- models -------------------------------------------------------------------------------------------------------
 
     def spawn(self, text: str, name: str, pose: Transform, namespace: str = "") -> str:
-        """Add the model in a text, URDF or SDF, to the world.
+        """Add the model that URDF or SDF describes to the world.
 
         Args:
             text: the description.
             name: the name of the model; empty for the name in the description.
             pose: the pose in the world to which the model's own pose is relative.
-            namespace: the default namespace for the nodes of its plugins.
+            namespace: the default namespace for the nodes of the model's plugins.
 
         Returns:
             The name of the model.
@@ -129,9 +129,9 @@ class Services:
         return name
 
     def renew(self, text: str, name: str) -> None:
-        """Replace a model by the one in a text, in the simulation's thread; may be called from any thread.
+        """Replace a model by the model in a description; may be called from any thread.
 
-        The simulation logs its own objections later.
+        The description is read immediately. The model is replaced later in the simulation's thread, which logs errors.
 
         Args:
             text: the description, URDF or SDF.

@@ -1,4 +1,4 @@
-"""Elements of a world that SDF defines but that are not simulated."""
+"""Elements of SDF that a world may contain but that are not simulated."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _WITHOUT_PLUGINS = frozenset({"actor", "visual"})
 
 
 def unsimulated(world: World) -> list[str]:
-    """Return the kinds of elements in a world that are not simulated.
+    """Return the names of the elements in a world that are not simulated, sorted.
 
     Examples are ``<projector>`` and ``libwalk.so in <actor>``.
     """
@@ -25,7 +25,7 @@ def unsimulated(world: World) -> list[str]:
 
 
 def unsimulated_in(model: Model) -> list[str]:
-    """Return the kinds of elements in a model that are not simulated."""
+    """Return the names of the elements in a model that are not simulated, sorted."""
     elements = (part.element for part in (model, *_inside(model)))
     return _named(element for element in elements if element is not None)
 
@@ -46,7 +46,7 @@ def _named(roots: Iterable[Element]) -> list[str]:
 
 
 def _name(parent: Element, child: Element) -> str:
-    """Return the name of an element that is not simulated; empty for other elements."""
+    """Return the name of a child element that is not simulated; empty for a simulated one."""
     if child.tag in _NOWHERE:
         return f"<{child.tag}>"
     if parent.tag == "world" and child.tag == "joint" and child.first("sensor") is not None:
@@ -60,7 +60,7 @@ def _name(parent: Element, child: Element) -> str:
 
 
 def _roots(world: World) -> Iterator[Element]:
-    """Yield the root elements of the world and of all included files."""
+    """Yield the element of the world, and the elements that were included from other files."""
     if world.element is not None:
         yield world.element
     own = None if world.element is None else world.element.source

@@ -1,4 +1,4 @@
-"""Find and read the world to simulate."""
+"""Finds and reads the world to simulate."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ class LoadedWorld(NamedTuple):
 
     Attributes:
         world: the parsed world.
-        finder: the finder of its files.
+        finder: the finder of the world's files.
         diagnostics: findings about the world.
         path: the file of the world.
-        files: all files from which it was read.
+        files: all files from which the world was read.
         read_ns: a time in nanoseconds since the epoch before which none of the files was read.
     """
 
@@ -54,8 +54,8 @@ def load_world(name: str, text: str | None = None, environment: Mapping[str, str
         environment: the variables with the search paths; by default the variables of the process.
 
     Raises:
-        LinkwrightError: SIM150, there is no such world; SIM151, the file does not contain one; SIM105, it has too many
-            links; other errors of the file.
+        LinkwrightError: SIM150, there is no such world; SIM151, the file does not contain a world; SIM105, the world
+            has too many links; other errors of the file.
     """
     read_ns = time.time_ns()
     path = Path(name.removeprefix("file://")).expanduser()

@@ -1,4 +1,4 @@
-"""Forces and torques that act on links for some time (``gazebo_ros_force_system``)."""
+"""Forces and torques that act on links for a limited time (``gazebo_ros_force_system``)."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Wrench:
         torque: the torque in N m, in the axes of the world.
         point: the point of application of the force, in the frame of the link.
         begin: the simulated time in nanoseconds from which the wrench acts.
-        end: the simulated time in nanoseconds until which it acts; None for ever.
+        end: the simulated time in nanoseconds until which the wrench acts; None for no end.
     """
 
     force: Vector3
@@ -31,7 +31,7 @@ class Wrench:
 
 
 class Wrenches:
-    """The wrenches on all links; several wrenches on one link are added up.
+    """The wrenches that act on links; the wrenches on a link add up.
 
     Args:
         simulation: the simulation of the world.
@@ -43,7 +43,7 @@ class Wrenches:
         self._scheduled = False
 
     def add(self, link: str, wrench: Wrench) -> None:
-        """Add a wrench on a link."""
+        """Add a wrench on a link, which is applied from the next step on."""
         self._acting.setdefault(link, []).append(wrench)
         if not self._scheduled:
             self._scheduled = True
@@ -69,7 +69,7 @@ class Wrenches:
             simulation.push(link, force.tolist(), torque.tolist())
 
     def _sum(self, link: str, wrenches: list[Wrench]) -> tuple[Array, Array]:
-        """Return the sum of forces, and of torques about the centre of mass."""
+        """Return the total force in N, and the total torque in N m about the centre of mass of a link."""
         pose = self._simulation.link_pose(link)
         turn, centre = rotation_matrix(pose[3:]), self._simulation.data.body(link).xipos
         force, torque = np.zeros(3), np.zeros(3)

@@ -1,1 +1,1 @@
-"""Substitutes for the Gazebo packages that launch files include, as a prefix with their share folders."""
+"""Substitutes for the Gazebo packages that launch files include, installed below one prefix."""

@@ -14,35 +14,38 @@ if TYPE_CHECKING:
 
 
 class ActionServer(action_server.ActionServer):
-    """Executes the goals of an action."""
+    """An action server, which executes goals."""
 
     def get_num_entities(self) -> NumberOfEntities:
-        """Return the number of entities that the server uses: a timer that drops old results, and three services."""
+        """Return the number of entities of the server: three services, and a timer that drops old results."""
         return NumberOfEntities(num_timers=1, num_services=3)
 
 
 class ActionClient(action_client.ActionClient):
-    """Sends goals to an action."""
+    """An action client, which sends goals."""
 
     def get_num_entities(self) -> NumberOfEntities:
-        """Return the number of entities of the client: two subscriptions (feedback, status) and three clients."""
+        """Return the number of entities of the client: three service clients and two subscriptions.
+
+        The subscriptions receive the feedback and the status.
+        """
         return NumberOfEntities(num_subscriptions=2, num_clients=3)
 
 
 def get_action_names_and_types(node: Node) -> NamesAndTypes:
-    """Return all actions with their types."""
+    """Return the names of all actions in the graph, with their types."""
     return node.get_action_names_and_types()
 
 
 def get_action_client_names_and_types_by_node(
     node: Node, remote_node_name: str, remote_node_namespace: str
 ) -> NamesAndTypes:
-    """Return the actions that a node is a client of, with their types."""
+    """Return the names of the actions for which a node has clients, with their types."""
     return node.context.graph.get_action_client_names_and_types_by_node(remote_node_name, remote_node_namespace)
 
 
 def get_action_server_names_and_types_by_node(
     node: Node, remote_node_name: str, remote_node_namespace: str
 ) -> NamesAndTypes:
-    """Return the actions that a node is a server of, with their types."""
+    """Return the names of the actions for which a node has servers, with their types."""
     return node.context.graph.get_action_server_names_and_types_by_node(remote_node_name, remote_node_namespace)

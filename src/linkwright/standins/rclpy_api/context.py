@@ -1,4 +1,4 @@
-"""Contexts: from ``rclpy.init`` to ``rclpy.shutdown`` (rclpy ``context``)."""
+"""The lifetime of a program in the graph, from ``rclpy.init`` to ``rclpy.shutdown`` (rclpy ``context``)."""
 
 from __future__ import annotations
 
@@ -32,7 +32,9 @@ _open: weakref.WeakSet[Context] = weakref.WeakSet()
 
 
 class Context:
-    """A graph with its nodes, from initialisation to shutdown; each context is initialised and shut down once.
+    """A graph with its nodes, from initialisation to shutdown.
+
+    A context can be initialised only once.
 
     Args:
         graph: an existing graph, which is closed with the context.
@@ -52,12 +54,12 @@ class Context:
 
     @property
     def enable_rosout(self) -> bool:
-        """Whether nodes publish their log messages, which the command line may disable."""
+        """Whether nodes publish their log messages, which a command-line option can disable."""
         return self.ros_arguments.rosout_logs is not False
 
     @property
     def handle(self) -> Context | None:
-        """The context itself, for ``with context.handle``; None before it is initialised."""
+        """The context itself, for ``with context.handle``; None before initialisation."""
         return self if self._initialized else None
 
     @property
@@ -69,7 +71,10 @@ class Context:
             return self._graph
 
     def wait_for_network(self) -> None:
-        """Wait, once, until the graph has joined the network; otherwise DDS would delay the first timers."""
+        """Wait until the graph has joined the network; later calls return immediately.
+
+        Without this wait, DDS would delay the first timers.
+        """
         joining, self._joining = self._joining, None
         if joining is not None:
             joining.wait_until_ready(_LONGEST_JOINING_S)
@@ -82,10 +87,11 @@ class Context:
         Args:
             args: the command line; None for ``sys.argv``.
             initialize_logging: whether to apply the logging options of the command line.
-            domain_id: the network's domain; None for the value of ROS_DOMAIN_ID, or 0 if that is not set.
+            domain_id: the domain ID of the network; None for the value of ROS_DOMAIN_ID, or 0 if the variable is not
+                set.
 
         Raises:
-            RuntimeError: the domain is negative, or the context was initialised before.
+            RuntimeError: the domain ID is negative, or the context was initialised before.
             UnknownROSArgsError: there are unknown ROS arguments.
             RCLInvalidROSArgsError: a ROS argument is malformed.
             RclError: security is enforced (``ROS_SECURITY_STRATEGY``), which is not supported.
@@ -112,7 +118,7 @@ class Context:
         return self._ok
 
     def get_domain_id(self) -> int:
-        """Return the network's domain.
+        """Return the domain ID of the network.
 
         Raises:
             RuntimeError: the context is not initialised.
@@ -125,9 +131,9 @@ class Context:
         return int(text) if text.isdigit() else 0
 
     def on_shutdown(self, callback: Callable[[], object]) -> None:
-        """Register a callback for the shutdown, and call it immediately if the context is already shut down.
+        """Register a callback for the shutdown; if the context is already shut down, call it now.
 
-        Bound methods are held weakly.
+        The context holds bound methods by weak references.
 
         Raises:
             TypeError: `callback` is not callable.
@@ -155,19 +161,22 @@ class Context:
         self._end()
 
     def try_shutdown(self) -> None:
-        """Shut the context down, unless it is already shut down."""
+        """Shut the context down, unless it is not initialised or already shut down."""
         if self._initialized and (self._ok or self._ended_by_signal):
             self.shutdown()
 
     def shutdown_by_signal(self) -> None:
-        """Stop the executors; `shutdown` does the rest, because a signal may arrive at any moment."""
+        """Stop the executors from a signal handler; `shutdown` must complete the shutdown later.
+
+        A signal can arrive at any point of the program, so this function does only what is safe there.
+        """
         if self._ok:
             self._ended_by_signal = True
             self._ok = False
             self._notify()
 
     def destroy(self) -> None:
-        """Shut the context down, unless it is already shut down (rclpy's name)."""
+        """Call `try_shutdown`, under rclpy's name."""
         self.try_shutdown()
 
     def __enter__(self) -> Self:
@@ -218,7 +227,7 @@ def _check_security() -> None:
 
 
 def read_ros_arguments(arguments: Sequence[str]) -> RosArguments:
-    """Return the ROS arguments of a command line.
+    """Parse the ROS arguments of a command line.
 
     Raises:
         UnicodeEncodeError: an argument is not text.

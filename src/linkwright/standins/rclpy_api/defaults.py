@@ -1,4 +1,4 @@
-"""The default context, which is used when no context is given."""
+"""The default context, which functions use if they receive no context."""
 
 from __future__ import annotations
 
@@ -20,13 +20,14 @@ class _Default:
 
 
 def get_default_context(*, shutting_down: bool = False) -> Context:
-    """Return the default context; after a shutdown, a new one.
+    """Return the default context, and create one if none exists.
 
     Args:
-        shutting_down: whether to drop the context, so that the next call returns a new one.
+        shutting_down: whether to return the existing context only and forget it, so that the next call creates a new
+            one.
 
     Raises:
-        RclError: there is no context to shut down.
+        RclError: `shutting_down` is set, and there is no context.
     """
     with _lock:
         if shutting_down:
@@ -42,17 +43,19 @@ def get_default_context(*, shutting_down: bool = False) -> Context:
 
 
 def has_default_context() -> bool:
-    """Return whether the default context has been requested and not been shut down since."""
+    """Return whether a default context exists, that is, was requested and not shut down since."""
     return _Default.context is not None
 
 
 def is_default(context: Context | None) -> bool:
-    """Return whether a context is the default context, or None, which means the same."""
+    """Return whether a context is the default context; None means the default context."""
     return context is None or context is _Default.context
 
 
 def use_graph(graph: Graph, args: Sequence[str]) -> Context:
-    """Initialise the default context with an existing graph, as `linkwright.testing` does; both are closed together.
+    """Initialise the default context with an existing graph, as `linkwright.testing` does.
+
+    The graph is closed with the context.
 
     Args:
         graph: the graph for the nodes of the default context.

@@ -1,4 +1,4 @@
-"""The rclpy exceptions that `linkwright.graph` does not raise, and the public names of all rclpy exceptions."""
+"""The exceptions of rclpy that `linkwright.graph` does not raise, and rclpy's names of all exceptions."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _MODULES = ("rclpy.exceptions", "rclpy.executors", "rclpy._rclpy_pybind11")
 
 
 class NoTypeSupportImportedException(Exception):
-    """Raised when an interface class cannot be used."""
+    """Raised when a class is not an interface class that can be used."""
 
     def __init__(self) -> None:
         super().__init__("no type_support imported")
@@ -47,7 +47,7 @@ class UnsupportedEventTypeError(RCLError):
 
 
 def name_as_rclpy() -> None:
-    """Give the exceptions rclpy's names in tracebacks and logs.
+    """Rename the exception classes, so that tracebacks and logs show rclpy's names.
 
     An example is ``rclpy.exceptions.InvalidNodeNameException``.
     """

@@ -1,4 +1,4 @@
-"""Executors, which belong to the default context unless another is given (rclpy ``executors``)."""
+"""Executors, which use the default context unless another one is given (rclpy ``executors``)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from linkwright.standins.rclpy_api.defaults import get_default_context
 
 
 class Executor(executors.Executor):
-    """Runs the callbacks of nodes; a base class for users' own executors, which define ``spin_once``."""
+    """Runs the callbacks of nodes; the base class of users' executors, which define ``spin_once``."""
 
     def __init__(self, *, context: Context | None = None) -> None:
         super().__init__(context=get_default_context() if context is None else context)
@@ -33,7 +33,7 @@ class MultiThreadedExecutor(executors.MultiThreadedExecutor, Executor):
 
 
 async def await_or_execute(callback: Callable[..., Any], *args: Any) -> Any:
-    """Await a coroutine function, or call any other callable."""
+    """Await the result of a coroutine function, or call any other callable, and return the result."""
     if inspect.iscoroutinefunction(callback):
         return await callback(*args)
     return callback(*args)

@@ -10,12 +10,12 @@ from linkwright.standins.rclpy_api.node import Node
 
 
 class LifecycleNode(LifecycleNodeMixin, Node):
-    """A managed node; users' managed nodes derive from it.
+    """A managed node; the base class of users' managed nodes.
 
     Args:
-        node_name: its name.
-        enable_communication_interface: whether the node has services for its transitions and publishes them.
-        callback_group: the callback group of the services.
+        node_name: the name of the node.
+        enable_communication_interface: whether the node offers services for transitions and publishes its transitions.
+        callback_group: the callback group of these services.
         arguments: further arguments of `Node`.
 
     Raises:

@@ -23,7 +23,7 @@ def write(record: LogRecord) -> None:
 
 
 def write_to(sink: LogSink) -> None:
-    """Redirect all loggers of the process from the console to a sink."""
+    """Redirect all loggers of the process from the console to `sink`."""
     _sinks[1:] = [sink]
 
 
@@ -48,28 +48,28 @@ def get_logger(name: str) -> Logger:
 
 
 def initialize() -> None:
-    """Reset the levels of all loggers."""
+    """Reset the levels of all loggers to their defaults."""
     LEVELS.reset()
 
 
 def shutdown() -> None:
-    """Direct all loggers to the console again."""
+    """Direct the output of all loggers to the console again."""
     del _sinks[1:]
 
 
 def clear_config() -> None:
-    """Direct all loggers to the console again, and reset their levels."""
+    """Direct the output of all loggers to the console again, and reset their levels."""
     shutdown()
     initialize()
 
 
 def set_logger_level(name: str, level: int, detailed_error: bool = False) -> None:  # noqa: ARG001  # rclpy's signature
-    """Set the level of a logger, which its children inherit; the empty name sets the default level."""
+    """Set the level of a logger and its children; the empty name sets the default level."""
     LEVELS.set(name, LogLevel(level))
 
 
 def get_logger_effective_level(name: str) -> LogLevel:
-    """Return the effective level of a logger, which is its own or inherited."""
+    """Return the effective level of a logger: its own level, or else the inherited level."""
     return LEVELS.effective_level(name)
 
 

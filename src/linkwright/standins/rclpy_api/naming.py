@@ -1,4 +1,4 @@
-"""Validation of names, which rclpy divides among several modules."""
+"""Validation and expansion of names, which rclpy distributes over several modules."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def validate_namespace(namespace: str) -> bool:
 
 
 def validate_topic_name(name: str, *, is_service: bool = False) -> bool:
-    """Return True for a valid topic or service name, which may be relative or private.
+    """Return True for a valid name of a topic or service; the name may be relative or private.
 
     Raises:
         InvalidTopicNameError, InvalidServiceNameError: the name is not valid.
@@ -55,7 +55,7 @@ def validate_full_topic_name(name: str, *, is_service: bool = False) -> bool:
 
 
 def expand_topic_name(topic_name: str, node_name: str, node_namespace: str) -> str:
-    """Return the absolute form of a node's topic name.
+    """Return the absolute name of a topic that a node refers to.
 
     Raises:
         ValueError: one of the names is not valid.
@@ -69,12 +69,15 @@ def expand_topic_name(topic_name: str, node_name: str, node_namespace: str) -> s
 
 
 def topic_or_service_is_hidden(name: str) -> bool:
-    """Return whether tools hide a topic or service by default, because a part of its name begins with ``_``."""
+    """Return whether tools hide a topic or service by default.
+
+    A name is hidden if one of its parts begins with ``_``.
+    """
     return names.is_hidden(name)
 
 
 def validate_parameter_name(name: str) -> bool:
-    """Return True for a valid parameter name: any name that is not empty.
+    """Return True for a valid parameter name; every name that is not empty is valid.
 
     Raises:
         InvalidParameterException: the name is empty.

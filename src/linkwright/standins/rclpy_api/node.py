@@ -1,4 +1,4 @@
-"""Nodes (rclpy ``node``): nodes of the graph that belong to a context and apply its command line."""
+"""Nodes of the graph that belong to a context and apply the context's command line (rclpy ``node``)."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from linkwright.standins.rclpy_api.defaults import check_initialized, get_defaul
 def _overrides(
     node_name: str, namespace: str, remappings: Sequence[tuple[str, str]], command_lines: Sequence[RosArguments]
 ) -> dict[str, Any]:
-    """Return the parameter overrides for a node from command lines; the first one takes precedence."""
+    """Return the parameter overrides of a node from command lines. The first command line takes precedence."""
     rules = Remappings(remappings)
     full_name = join(absolute_namespace(rules.namespace(namespace, node_name)), rules.node_name(node_name))
     overrides: dict[str, Any] = {}
@@ -28,24 +28,24 @@ def _overrides(
 
 
 class Node(GraphNode):
-    """A node; users' nodes derive from it.
+    """A node; the base class of users' nodes.
 
     Args:
-        node_name: its name, which the command line may change.
-        context: its context; None for the default context.
-        cli_args: a command line for this node alone.
-        namespace: its namespace, which the command line may change.
-        use_global_arguments: whether the command line of the context applies to it.
-        enable_rosout: whether it publishes its log messages on ``/rosout``.
+        node_name: the name of the node, which the command line can change.
+        context: the context of the node; None for the default context.
+        cli_args: a command line that applies to this node only.
+        namespace: the namespace of the node, which the command line can change.
+        use_global_arguments: whether the command line of the context applies to the node.
+        enable_rosout: whether the node publishes its log messages on ``/rosout``.
         rosout_qos_profile: the QoS profile of ``/rosout``.
-        start_parameter_services: whether other nodes can read and set its parameters.
+        start_parameter_services: whether other nodes can read and set the node's parameters.
         parameter_overrides: values that take precedence over defaults and over the command lines.
         allow_undeclared_parameters: whether parameters can be set and read without being declared.
         automatically_declare_parameters_from_overrides: whether all parameters with overrides are declared.
-        enable_logger_service: whether other nodes can read and set the levels of its loggers.
+        enable_logger_service: whether other nodes can read and set the levels of the node's loggers.
 
     Raises:
-        NotInitializedException: the context is not initialised.
+        NotInitializedError: the context is not initialised.
         InvalidNodeNameError, InvalidNamespaceError: the name or the namespace is not valid.
     """
 

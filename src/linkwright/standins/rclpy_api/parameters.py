@@ -1,4 +1,4 @@
-"""Read parameters from messages, text and files (rclpy ``parameter``)."""
+"""Conversion of parameters from messages, strings and files (rclpy ``parameter``)."""
 
 from __future__ import annotations
 
@@ -21,9 +21,10 @@ class ParameterService(ParameterServices):
 
 
 def get_parameter_value(string_value: str) -> Any:
-    """Convert text to the value of a parameter (rcl_interfaces/msg/ParameterValue).
+    """Convert a string to the value of a parameter (rcl_interfaces/msg/ParameterValue).
 
-    The text is read as YAML. If the result is not a valid parameter value, the text itself becomes a string value.
+    The string is parsed as YAML. If the result is not a valid parameter value, the parameter has the string itself as
+    its value.
     """
     if not string_value.strip():
         return Parameter("", value=string_value).get_parameter_value()
@@ -39,19 +40,19 @@ def parameter_dict_from_yaml_file(
     target_nodes: Sequence[str] | None = None,
     namespace: str = "",
 ) -> dict[str, Any]:
-    """Return the parameters in a file, as name -> rcl_interfaces/msg/Parameter.
+    """Return the parameters in a file, as a mapping of name -> rcl_interfaces/msg/Parameter.
 
     Args:
-        parameter_file: the file.
+        parameter_file: the path of the parameter file.
         use_wildcard: whether to include the parameters of ``/**``.
         target_nodes: the full names of the nodes to read parameters for; None for all.
         namespace: a prefix of each parameter name, followed by a dot.
 
     Raises:
-        RuntimeError: none of the nodes is in the file.
+        RuntimeError: the file contains none of the nodes.
         LinkwrightError: the file cannot be read.
     """
-    # Node names may omit the leading slash, both here and in the file.
+    # The leading slash of a node name is optional, both in `target_nodes` and in the file.
     rules: dict[str, dict[str, Any]] = {}
     for pattern, values in read_parameter_file(parameter_file):
         rules.setdefault(_absolute(pattern), {}).update(values)

@@ -1,4 +1,4 @@
-"""Deprecated policy names, which many programs still use, and overrides from parameters (rclpy ``qos``)."""
+"""Deprecated names of QoS policies that programs still use, and QoS overrides (rclpy ``qos``)."""
 
 from __future__ import annotations
 
@@ -18,7 +18,10 @@ from linkwright.graph.qos.profile import (
 
 
 class _OldName:
-    """A deprecated name of a policy value; reading it returns the value and warns of the new name."""
+    """A descriptor for the deprecated name of a policy value.
+
+    Reading the attribute returns the value, and warns that it has a new name.
+    """
 
     def __init__(self, policy: type[QoSPolicyEnum], old: str, new: str) -> None:
         self._policy = policy
@@ -47,17 +50,17 @@ def add_old_names() -> None:
 def declare_qos_parameters(
     entity_type: type, node: Any, topic_name: str, qos: QoSProfile, options: QoSOverridingOptions
 ) -> QoSProfile:
-    """Declare the parameters that override the profile of a publisher or subscription, and apply them to the profile.
+    """Declare the parameters that override the QoS of a publisher or subscription, and apply them.
 
     Args:
         entity_type: ``Publisher`` or ``Subscription``.
-        node: the node that declares them.
+        node: the node that declares the parameters.
         topic_name: the absolute name of the topic.
         qos: the profile, which is modified.
-        options: the policies that may be overridden.
+        options: the policies that can be overridden.
 
     Returns:
-        The same profile.
+        The modified profile `qos`.
 
     Raises:
         InvalidQosOverridesError: the profile is rejected, or a value is invalid for its policy.

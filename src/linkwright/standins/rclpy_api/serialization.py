@@ -1,4 +1,4 @@
-"""Serialize and deserialize messages (rclpy ``serialization``)."""
+"""Serializes and deserializes messages (rclpy ``serialization``)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ M = TypeVar("M")
 
 
 def serialize_message(message: Any) -> bytes:
-    """Serialize a message to CDR, including the header.
+    """Serialize a message to CDR, including the encapsulation header.
 
     Raises:
         TypeError: `message` is not a message.
@@ -21,7 +21,7 @@ def serialize_message(message: Any) -> bytes:
 
 
 def deserialize_message(serialized_message: bytes, message_type: type[M]) -> M:
-    """Deserialize a message.
+    """Deserialize a message from CDR.
 
     Raises:
         TypeError: `message_type` is not a message class.

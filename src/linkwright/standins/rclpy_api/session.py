@@ -1,4 +1,4 @@
-"""The functions of the package ``rclpy`` itself: initialisation, shutdown, spinning."""
+"""The functions of the package ``rclpy`` itself, for initialisation, shutdown and spinning."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class _Global:
 
 
 class InitContextManager:
-    """The result of `init`; as a context manager it shuts the context down at the end of the block.
+    """The result of `init`, a context manager that shuts the context down on exit.
 
     Attributes:
         context: the context that was initialised.
@@ -54,14 +54,14 @@ def init(
     domain_id: int | None = None,
     signal_handler_options: SignalHandlerOptions | None = None,
 ) -> InitContextManager:
-    """Initialise a context, which nodes need.
+    """Initialise a context, which is required before nodes are created.
 
     Args:
         args: the command line; None for ``sys.argv``.
         context: the context; None for the default context.
-        domain_id: the network's domain; None for the value of ROS_DOMAIN_ID, or 0 if that is not set.
-        signal_handler_options: the signals that shut the context down; None for all signals with the default context,
-            and for no signals with another.
+        domain_id: the domain ID of the network; None for the value of ROS_DOMAIN_ID, or 0 if the variable is not set.
+        signal_handler_options: the signals that shut contexts down; None for all signals if the context is the default
+            context, and for no signals otherwise.
 
     Raises:
         RuntimeError: the context is already initialised.
@@ -112,7 +112,7 @@ def try_shutdown(*, context: Context | None = None, uninstall_handlers: bool | N
 
 
 def get_global_executor() -> Executor:
-    """Return the default executor, which belongs to the default context."""
+    """Return the global executor, which belongs to the default context."""
     with _lock:
         if _Global.executor is None:
             _Global.executor = SingleThreadedExecutor()
@@ -134,14 +134,15 @@ def spin_once(node: Node, *, executor: Executor | None = None, timeout_sec: floa
     Args:
         node: the node.
         executor: the executor; None for the global executor.
-        timeout_sec: the longest wait, in seconds; None for no limit.
+        timeout_sec: the maximum time to wait, in seconds; None for no limit.
     """
     runner = get_global_executor() if executor is None else executor
     added = runner.add_node(node)
     try:
         runner.spin_once(timeout_sec=timeout_sec)
     finally:
-        # During a callback of the node, the node already belongs to the executor and must stay there.
+        # If a callback of the node calls this function, the node already belongs to the executor and must not be
+        # removed.
         if added is not False:
             runner.remove_node(node)
 
@@ -158,7 +159,8 @@ def spin(node: Node, executor: Executor | None = None) -> None:
     try:
         runner.spin()
     finally:
-        # During a callback of the node, the node already belongs to the executor and must stay there.
+        # If a callback of the node calls this function, the node already belongs to the executor and must not be
+        # removed.
         if added is not False:
             runner.remove_node(node)
 
@@ -172,14 +174,15 @@ def spin_until_future_complete(
         node: the node.
         future: the future to wait for.
         executor: the executor; None for the global executor.
-        timeout_sec: the longest wait, in seconds; None for no limit.
+        timeout_sec: the maximum time to wait, in seconds; None for no limit.
     """
     runner = get_global_executor() if executor is None else executor
     added = runner.add_node(node)
     try:
         runner.spin_until_future_complete(future, timeout_sec)
     finally:
-        # During a callback of the node, the node already belongs to the executor and must stay there.
+        # If a callback of the node calls this function, the node already belongs to the executor and must not be
+        # removed.
         if added is not False:
             runner.remove_node(node)
 

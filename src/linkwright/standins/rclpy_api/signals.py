@@ -12,7 +12,7 @@ from typing import Any
 
 
 class SignalHandlerOptions(IntEnum):
-    """The signals that shut contexts down."""
+    """A combination of the signals that shut contexts down."""
 
     NO = 0
     SIGINT = 1
@@ -27,15 +27,15 @@ _previous: dict[int, Any] = {}
 
 
 def shut_down_on_signal(context: Any) -> None:
-    """Have a context's ``shutdown_by_signal`` called on a signal."""
+    """Register a context whose ``shutdown_by_signal`` is called when a signal arrives."""
     _on_signal.add(context)
 
 
 def install_signal_handlers(options: SignalHandlerOptions = SignalHandlerOptions.ALL) -> None:
-    """Install handlers for signals: they shut all contexts down, then call the previous handler.
+    """Install signal handlers that shut all contexts down and then call the previous handler.
 
-    Ctrl-C therefore still raises KeyboardInterrupt. Outside the main thread nothing is done, because Python installs
-    handlers only there.
+    Because the previous handler is called, Ctrl-C still raises KeyboardInterrupt. Outside the main thread this function
+    does nothing, because Python installs handlers only in the main thread.
     """
     if threading.current_thread() is not threading.main_thread():
         return
@@ -55,7 +55,7 @@ def uninstall_signal_handlers() -> None:
 
 
 def get_current_signal_handlers_options() -> SignalHandlerOptions:
-    """Return which signals are handled."""
+    """Return the signals for which handlers are installed."""
     return SignalHandlerOptions(sum(option for number, option in _OPTIONS.items() if number in _previous))
 
 

@@ -1,4 +1,4 @@
-"""Set clocks from ``/clock`` (rclpy ``time_source``); a node's own clock does not need this module."""
+"""Sets clocks from ``/clock`` (rclpy ``time_source``); a node's own clock does not need this module."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ USE_SIM_TIME_NAME = "use_sim_time"
 
 
 class TimeSource:
-    """Sets clocks from ``/clock`` while the parameter ``use_sim_time`` of a node is true.
+    """Sets clocks from ``/clock`` while a node's parameter ``use_sim_time`` is true.
 
     Args:
-        node: the node with the parameter and the subscription; it may be attached later.
+        node: the node that has the parameter and the subscription; None to attach a node later.
     """
 
     def __init__(self, *, node: Node | None = None) -> None:
@@ -54,7 +54,7 @@ class TimeSource:
             self._unsubscribe()
 
     def attach_node(self, node: Node) -> None:
-        """Follow the parameter of this node instead of any other node's."""
+        """Follow the parameter of a node, and detach any other node."""
         self.detach_node()
         self._node = weakref.ref(node)
         if not node.has_parameter(USE_SIM_TIME_NAME):
@@ -63,7 +63,7 @@ class TimeSource:
         node.add_post_set_parameters_callback(self._on_set_parameters)
 
     def detach_node(self) -> None:
-        """Stop following a node's parameter; the clocks do not change."""
+        """Stop following a node's parameter, without changing the clocks."""
         node = self._get_node()
         if node is not None:
             self._unsubscribe()
@@ -71,10 +71,10 @@ class TimeSource:
         self._node = None
 
     def attach_clock(self, clock: Clock) -> None:
-        """Set this clock too.
+        """Add a clock that is set from ``/clock``.
 
         Raises:
-            ValueError: the clock is not a clock of ROS time.
+            ValueError: the clock does not have ROS time.
         """
         if not isinstance(clock, ROSClock):
             raise ValueError("Only clocks with type ROS_TIME can be attached.")  # noqa: TRY004 - as in rclpy

@@ -15,7 +15,7 @@ class TypeHashDictionary(TypedDict):
 
 
 class TypeHash:
-    """A type hash and the version of the rules by which it was computed; version -1 means no hash.
+    """A type hash and the version of the hashing rules; version -1 means that there is no hash.
 
     Raises:
         AssertionError: the value does not have 32 bytes.
@@ -39,7 +39,7 @@ class TypeHash:
 
     @property
     def value(self) -> bytes:
-        """The hash, 32 bytes."""
+        """The hash of 32 bytes."""
         return self._value
 
     @value.setter

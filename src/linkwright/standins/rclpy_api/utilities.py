@@ -1,4 +1,4 @@
-"""The command line, timeouts and middleware names (rclpy ``utilities``)."""
+"""Functions for command lines, timeouts and middleware names (rclpy ``utilities``)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 
 def remove_ros_args(args: Sequence[str] | None = None) -> list[str]:
-    """Return the arguments of a command line that are not for ROS.
+    """Return a command line without its ROS arguments.
 
     Args:
         args: the command line with the program's name; None for ``sys.argv``.
@@ -19,14 +19,17 @@ def remove_ros_args(args: Sequence[str] | None = None) -> list[str]:
 
 
 def timeout_sec_to_nsec(timeout_sec: float | None) -> int:
-    """Convert a timeout to nanoseconds; return -1, no limit, for None and negative numbers."""
+    """Convert a timeout to nanoseconds.
+
+    The result is -1, which means no limit, for None and negative numbers.
+    """
     if timeout_sec is None or timeout_sec < 0:
         return -1
     return int(float(timeout_sec) * NANOSECONDS_PER_SECOND)
 
 
 def get_rmw_implementation_identifier() -> str:
-    """Return the name of the middleware that Linkwright's middleware is compatible with."""
+    """Return the name of the ROS middleware with which Linkwright's middleware is compatible."""
     from linkwright.wire.joining import middleware
 
     return middleware()

@@ -1,4 +1,4 @@
-"""Counts of entities (rclpy ``waitable``)."""
+"""Counts of the entities that an executor waits for (rclpy ``waitable``)."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import astuple, dataclass
 
 @dataclass
 class NumberOfEntities:
-    """The number of entities of each kind; objects of this class can be added."""
+    """The number of entities of each kind, as a sum that can be extended with ``+``."""
 
     num_subscriptions: int = 0
     num_guard_conditions: int = 0

@@ -1,4 +1,4 @@
-"""Wait for a single message (rclpy ``wait_for_message``)."""
+"""Waits for a single message (rclpy ``wait_for_message``)."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ def wait_for_message(
     Args:
         msg_type: the message class.
         node: the node that subscribes.
-        topic: the topic.
-        args: `time_to_wait`, which Humble accepts as the fourth positional argument.
-        qos_profile: the requested profile.
-        time_to_wait: the longest wait, in seconds; negative for no limit.
+        topic: the name of the topic.
+        args: `time_to_wait` as a positional argument, which Humble accepts.
+        qos_profile: the QoS profile of the subscription.
+        time_to_wait: the maximum time to wait, in seconds; negative for no limit.
 
     Returns:
-        Whether a message arrived, and the message or None.
+        ``(True, message)``, or ``(False, None)`` if no message arrived.
     """
     if args:
         (time_to_wait,) = args

@@ -1,1 +1,1 @@
-"""The stand-in for ``rosidl_runtime_py``."""
+"""A stand-in for ``rosidl_runtime_py``."""

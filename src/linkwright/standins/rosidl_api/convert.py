@@ -1,4 +1,4 @@
-"""Convert messages to dictionaries, YAML and CSV."""
+"""Converts messages to dictionaries, YAML and CSV."""
 
 from collections import OrderedDict
 from typing import Any
@@ -17,7 +17,7 @@ def message_to_yaml(
     no_str: bool = False,
     flow_style: bool = False,
 ) -> str:
-    """Convert a message to YAML; raw bytes become ``!!binary`` values."""
+    """Convert a message to YAML; if `msg` is bytes, the YAML contains a ``!!binary`` value."""
     if isinstance(msg, bytes):
         import yaml
 
@@ -26,7 +26,7 @@ def message_to_yaml(
 
 
 def message_to_csv(msg: Any, *, truncate_length: int | None = None, no_arr: bool = False, no_str: bool = False) -> str:
-    """Convert a message to comma-separated values; raw bytes are written as Python's ``repr``."""
+    """Convert a message to comma-separated values; if `msg` is bytes, return Python's ``repr``."""
     if isinstance(msg, bytes):
         return str(msg)
     return to_csv(msg, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str)
@@ -35,14 +35,14 @@ def message_to_csv(msg: Any, *, truncate_length: int | None = None, no_arr: bool
 def message_to_ordereddict(
     msg: Any, *, truncate_length: int | None = None, no_arr: bool = False, no_str: bool = False
 ) -> OrderedDict[str, Any]:
-    """Return the fields of a message as plain values; raw bytes become the field ``bytes``."""
+    """Convert a message to a dictionary of plain values; if `msg` is bytes, its only key is ``bytes``."""
     if isinstance(msg, bytes):
         return OrderedDict(bytes=msg)
     return to_dict(msg, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str)
 
 
 def get_message_slot_types(msg: Any) -> OrderedDict[str, Any]:
-    """Return the names and types of a message's fields."""
+    """Return the types of a message's fields by name."""
     return OrderedDict(zip((slot[1:] for slot in msg.__slots__), msg.SLOT_TYPES, strict=True))
 
 
@@ -54,7 +54,10 @@ def convert_value(
     no_arr: bool = False,
     no_str: bool = False,
 ) -> Any:
-    """Convert a value to plain Python; strings, containers and their items are truncated to a length."""
+    """Convert a value to plain Python values.
+
+    Strings and containers, including nested ones, are truncated to `truncate_length`.
+    """
 
     def convert(item: Any) -> Any:
         return convert_value(item, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str)

@@ -1,4 +1,4 @@
-"""The interfaces of all packages."""
+"""Lists the interfaces of all packages."""
 
 from collections.abc import Iterable
 
@@ -8,7 +8,7 @@ from linkwright.packages import current_finder, interface_files
 
 
 def get_interface_packages() -> list[str]:
-    """Return the names of the packages that have interfaces, sorted."""
+    """Return the sorted names of the packages that define interfaces."""
     return sorted({name.partition("/")[0] for kind in ("msg", "srv", "action") for name in LIBRARY.names(kind)})
 
 
@@ -40,7 +40,7 @@ def get_interface_path(interface_name: str) -> str:
     """Return the path of the file that defines an interface.
 
     Raises:
-        ValueError: the text is not the name of an interface.
+        ValueError: `interface_name` is not the name of an interface.
         LookupError: the interface has no file.
     """
     parts = interface_name.split("/")

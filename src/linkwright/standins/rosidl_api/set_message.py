@@ -1,4 +1,4 @@
-"""Set the fields of a message from a dictionary."""
+"""Sets the fields of a message from a dictionary."""
 
 from typing import Any
 
@@ -8,9 +8,10 @@ from linkwright.messages import set_fields
 def set_message_fields(
     msg: Any, values: dict[str, Any], expand_header_auto: bool = False, expand_time_now: bool = False
 ) -> list[Any]:
-    """Set the fields of a message; return functions that set the stamps given as ``now``.
+    """Set the fields of a message.
 
-    The functions are to be called when the message is sent.
+    Returns:
+        Functions that set the stamps given as ``now``; call them when the message is sent.
 
     Raises:
         AttributeError: a field does not exist.

@@ -1,4 +1,4 @@
-"""Find the classes of interfaces by name."""
+"""Loads the classes of interfaces by name."""
 
 from typing import Any
 
@@ -24,7 +24,7 @@ def get_action(identifier: str) -> Any:
 
 
 def get_interface(identifier: str) -> Any:
-    """Return the class of a message, service or action."""
+    """Return the class of the message, service or action with a name."""
     return _found(classes.get_interface, identifier, "interface")
 
 
@@ -34,7 +34,7 @@ def import_message_from_namespaced_type(message_type: Any) -> Any:
 
 
 def _found(getter: Any, identifier: str, what: str) -> Any:
-    # Callers expect the exceptions that importing the generated module would raise.
+    # Raise the same exceptions as importing the generated module would, because callers expect them.
     name = split_name(identifier)
     if name is None or name.kind is None:
         raise ValueError(f"Expected the full name of a {what}, got '{identifier}'")

@@ -1,7 +1,7 @@
 """A pytest plugin that provides ``launch_pytest`` and ``launch_testing`` to the tests that import them.
 
-pytest finds it next to the stand-ins. It imports nothing before it is needed, and does nothing if the real packages are
-installed.
+pytest finds the plugin in the folder of the stand-ins. The plugin does nothing if the real packages are installed, and
+imports other modules only when needed.
 """
 
 from __future__ import annotations
@@ -32,13 +32,13 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_addhooks(pluginmanager: pytest.PytestPluginManager) -> None:
-    """Register launch_testing's hook, which conftest.py files may implement."""
+    """Register launch_testing's hook, which ``conftest.py`` files can implement."""
     if not _is_real("launch_testing"):
         pluginmanager.add_hookspecs(_Hooks)
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Register the markers, because a module's markers are checked while it is imported."""
+    """Register the markers, because pytest checks a module's markers during its import."""
     for marker in _MARKERS:
         config.addinivalue_line("markers", marker)
 
@@ -46,12 +46,12 @@ def pytest_configure(config: pytest.Config) -> None:
 class _Hooks:
     @pytest.hookspec(firstresult=True)
     def pytest_launch_collect_makemodule(self, path: Path, parent: pytest.Collector, entrypoint: object) -> Any:
-        """Create a collector for the tests in a file."""
+        """Return a collector for the launch test in a file."""
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_pycollect_makemodule(module_path: Path, parent: pytest.Collector) -> Any:
-    """Collect a file as one launch test if its ``generate_test_description`` has a marker for that."""
+    """Collect a file as one launch test if the marker of its ``generate_test_description`` requests it."""
     if _is_real("launch_testing") or _DESCRIPTION not in module_path.read_bytes():
         return None
     return importlib.import_module(_ITEMS)._collect_marked(module_path, parent)
@@ -59,7 +59,7 @@ def pytest_pycollect_makemodule(module_path: Path, parent: pytest.Collector) -> 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_pycollect_makeitem(collector: Any, name: str, obj: object) -> Any:
-    """Register the plugin when the first test is collected after the import of ``launch_pytest``."""
+    """Register the plugin of ``launch_pytest`` once a test module has imported this package."""
     manager = collector.config.pluginmanager
     if not _is_ours(sys.modules.get(_PLUGIN)):
         return None
@@ -79,6 +79,6 @@ def _is_ours(module: ModuleType | None) -> bool:
 
 
 def _is_real(package: str) -> bool:
-    """Return whether the real package is installed, in which case ours is not used."""
+    """Return whether the real package is installed and takes precedence over ours."""
     found = PathFinder.find_spec(package)
     return found is not None and found.origin is not None and not found.origin.endswith(".txt")

@@ -1,10 +1,10 @@
-"""Makes the stand-ins importable; every Python process with this folder on its ``PYTHONPATH`` runs this module.
+"""Makes the stand-ins importable in every Python process with this folder on its ``PYTHONPATH``.
 
-Linkwright is imported only when the program imports a module of ours that no other finder has. If a real rclpy is
-importable, none of our modules is provided: its nodes accept only the real message classes, and vice versa.
+Linkwright is imported only when the program imports a module of ours that no other finder provides. If a real rclpy is
+importable, none of our modules is provided, because the nodes of one accept only its own message classes.
 """
 
-# Every Python process executes the imports here, and pathlib is slow to import.
+# This module uses os.path, because it runs in every Python process and pathlib is slow to import.
 # ruff: noqa: PTH100, PTH109, PTH113, PTH118, PTH120, PTH208
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _PARENTS_LOOKED_AT = 5
 
 
 class StandIns:
-    """Finds the stand-ins; this finder comes after all others."""
+    """Finds the stand-ins, after all other finders have failed."""
 
     def __init__(self) -> None:
         self._names: frozenset[str] | None = None
@@ -40,7 +40,7 @@ class StandIns:
         self._searching = False
 
     def find_spec(self, name: str, path: object = None, target: object = None) -> ModuleSpec | None:
-        """Return the spec of the stand-in for a module that no other finder has, or None."""
+        """Return the spec of a stand-in or interface module, or None for another module."""
         if self._searching or name.startswith("_"):
             return None
         top, _, rest = name.partition(".")
@@ -57,7 +57,7 @@ class StandIns:
         return self.interface(name) if _may_hold_interfaces(top) else None
 
     def interface(self, name: str) -> ModuleSpec | None:
-        """Return the spec of an interface module, or None."""
+        """Return the spec of an interface module, or None for another module."""
         if self._searching or self.has_real_ros():
             return None
         self._searching = True
@@ -70,7 +70,7 @@ class StandIns:
             self._searching = False
 
     def has(self, name: str) -> bool:
-        """Return whether there is a stand-in with the given name."""
+        """Return whether there is a stand-in for a module name."""
         if self._names is None:
             try:
                 self._names = frozenset(name.removesuffix(".txt") for name in os.listdir(_TABLES))
@@ -87,16 +87,17 @@ class StandIns:
 
 
 class SourceFolders:
-    """Finds stand-ins and interface modules whose names are also source folders; this finder comes before all others.
+    """Finds stand-ins and interface modules that have the name of a source folder, before all others.
 
-    Otherwise Python would import the folders as empty modules: ``my_msgs/msg``, or ``launch`` next to ``package.xml``.
+    Without this finder, Python would import such a folder as an empty module, for example ``my_msgs/msg``, or
+    ``launch`` next to ``package.xml``.
     """
 
     def __init__(self, stand_ins: StandIns) -> None:
         self._stand_ins = stand_ins
 
     def find_spec(self, name: str, path: object = None, target: object = None) -> ModuleSpec | None:
-        """Return the spec of the stand-in or interface module for a name that is otherwise only a folder, or None."""
+        """Return the spec of a stand-in or interface module that a source folder hides, or None."""
         package, _, kind = name.rpartition(".")
         if not package:
             return self._stand_ins.find_spec(name) if self._is_hidden(name) else None
@@ -105,7 +106,7 @@ class SourceFolders:
         return None if getattr(sys.modules[package], "__file__", None) else self._stand_ins.interface(name)
 
     def _is_hidden(self, name: str) -> bool:
-        """Return whether a folder that is not a package hides the stand-in with its name."""
+        """Return whether a folder that is not a Python package hides the stand-in with the same name."""
         if not self._stand_ins.has(name):
             return False
         found = PathFinder.find_spec(name)
@@ -113,7 +114,7 @@ class SourceFolders:
 
 
 def _may_hold_interfaces(package: str) -> bool:
-    """Return whether a package may have interface files, so that loading Linkwright is worthwhile."""
+    """Return whether a package may contain interface files, so that Linkwright must be imported."""
     if _is_loaded("linkwright.messages") or package.endswith(_INTERFACE_ENDINGS) or package in _OTHER_INTERFACES:
         return True
     shares = [os.path.join(prefix, "share") for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)]
@@ -121,13 +122,16 @@ def _may_hold_interfaces(package: str) -> bool:
 
 
 def _is_loaded(name: str) -> bool:
-    """Return whether a module is completely imported; imports made during its import are not ours to handle."""
+    """Return whether a module is completely imported.
+
+    Imports that the module makes during its own import must not be handled here.
+    """
     module = sys.modules.get(name)
     return module is not None and not getattr(module.__spec__, "_initializing", False)
 
 
 def _near_folders() -> list[str]:
-    """Return the folders that may contain packages of the program's own workspace."""
+    """Return the folders that may contain packages of the workspace to which the program belongs."""
     current = os.getcwd()
     folders = [current, os.path.join(current, "src")]
     program = os.path.abspath(sys.argv[0]) if getattr(sys, "argv", [""])[0] else current
@@ -138,16 +142,17 @@ def _near_folders() -> list[str]:
 
 
 def _make_importable() -> None:
-    """Append Linkwright and its dependencies to ``sys.path``, after the program's own entries."""
+    """Append the folders of Linkwright and its dependencies to ``sys.path``."""
     for folder in (_LINKWRIGHT, *os.environ.get("LINKWRIGHT_SITE", "").split(os.pathsep)):
         if folder and folder not in sys.path:
             sys.path.append(folder)
 
 
 def _with_ros_field_checks(spec: ModuleSpec | None) -> ModuleSpec | None:
-    """Return the spec unchanged; for a user's program, make messages check fields as its ROS distribution does.
+    """Enable the field checks of the ROS distribution in a user's program, and return the spec.
 
-    A command of Linkwright in the shell is not a user's program, because it runs our own nodes.
+    Messages are then checked as strictly as by that distribution. A command of Linkwright in the shell is not a user's
+    program, because it runs our own nodes.
     """
     named = "ROS_DISTRO" in os.environ or "ROS_PYTHON_CHECK_FIELDS" in os.environ
     if spec is not None and named and not _is_loaded("linkwright.cli"):
@@ -159,12 +164,12 @@ def _with_ros_field_checks(spec: ModuleSpec | None) -> ModuleSpec | None:
 
 
 def _run_next_sitecustomize() -> None:
-    """Run the ``sitecustomize`` that this one hides."""
+    """Run the next ``sitecustomize`` on the path, which this module hides."""
     others = [entry for entry in sys.path if os.path.abspath(entry) != _HERE]
     spec = PathFinder.find_spec("sitecustomize", others)
     if spec is None or spec.loader is None:
         return
-    from importlib.util import module_from_spec  # imported late because it is large
+    from importlib.util import module_from_spec  # imported late because the module is large
 
     module = module_from_spec(spec)
     sys.modules["sitecustomize"] = module
@@ -172,10 +177,10 @@ def _run_next_sitecustomize() -> None:
 
 
 def _report_with_hint(kind: type[BaseException], error: BaseException, traceback: object) -> None:
-    """Print an uncaught error as Python does, with a hint if a ROS module, or a name in one, is missing.
+    """Print an uncaught error, with a hint if a ROS module or a name in one is missing.
 
-    Ctrl-C ends a node without a traceback while it waits for messages or is still being imported. In the user's own
-    code, the traceback is printed to show the location.
+    Ctrl-C does not print a traceback while a node waits for messages or is still being imported. If Ctrl-C interrupts
+    the user's own code, the traceback shows the location.
     """
     if kind is KeyboardInterrupt and _is_between_messages(traceback):
         return
@@ -194,7 +199,7 @@ def _report_with_hint(kind: type[BaseException], error: BaseException, traceback
 
 
 def _is_between_messages(traceback: object) -> bool:
-    """Return whether a traceback ends in our code or its callees, or in a module that is being imported."""
+    """Return whether a traceback ends in our code, in code called by it, or in an import."""
     is_ours, modules = False, 0
     while traceback is not None:
         code = traceback.tb_frame.f_code  # type: ignore[attr-defined]  # as above
@@ -209,6 +214,6 @@ def _is_between_messages(traceback: object) -> bool:
 _stand_ins = StandIns()
 sys.meta_path.insert(0, SourceFolders(_stand_ins))
 sys.meta_path.append(_stand_ins)
-if __name__ == "sitecustomize":  # not when `linkwright.pytest_plugin` runs this file after Python's startup
+if __name__ == "sitecustomize":  # this is false if `linkwright.pytest_plugin` runs the file after Python has started
     sys.excepthook = _report_with_hint
     _run_next_sitecustomize()

@@ -1,4 +1,4 @@
-"""Look up transforms in another process (tf2_ros ``BufferClient``)."""
+"""Looks up transforms in the buffer of another process (tf2_ros ``BufferClient``)."""
 
 from __future__ import annotations
 
@@ -35,13 +35,14 @@ _NO_ERROR = 0
 
 
 class BufferClient(BufferInterface):
-    """Requests transforms from the action of a buffer server; another thread must spin the node.
+    """Requests transforms from a buffer server through its action; another thread must spin the node.
 
     Args:
         node: the node of the client.
         ns: the name of the action.
         check_frequency: ignored, because the client does not poll.
-        timeout_padding: how long to wait for a response beyond the timeout of the lookup; a number is in seconds.
+        timeout_padding: the time to wait for the response in addition to the timeout of the lookup, as a duration or in
+            seconds.
     """
 
     def __init__(
@@ -65,7 +66,7 @@ class BufferClient(BufferInterface):
         self.action_client.destroy()
 
     def lookup_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Duration = NO_TIME) -> Any:
-        """Return the pose of the source frame in the target frame.
+        """Return the transform from the source frame to the target frame at a time.
 
         Raises:
             TransformException: there is no transform or no response.
@@ -90,7 +91,7 @@ class BufferClient(BufferInterface):
         fixed_frame: str,
         timeout: Duration = NO_TIME,
     ) -> Any:
-        """Return the pose of the source frame at one time in the target frame at another time.
+        """Return the transform from the source frame at one time to the target frame at another time.
 
         Raises:
             TransformException: there is no transform or no response.

@@ -1,4 +1,4 @@
-"""Transform point clouds into another frame (``tf2_sensor_msgs``)."""
+"""Transforms point clouds into another frame (``tf2_sensor_msgs``)."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ def transform_points(point_cloud: ArrayLike, transform: Any) -> NDArray[np.float
     """Transform points into the parent frame of a transform.
 
     Args:
-        point_cloud: shape (n, 3), in the child frame of the transform.
-        transform: geometry_msgs/msg/Transform or TransformStamped.
+        point_cloud: the points in the child frame of the transform, of shape (n, 3).
+        transform: a geometry_msgs/msg/Transform or TransformStamped.
 
     Returns:
-        The points, shape (n, 3).
+        The transformed points, of shape (n, 3).
     """
     pose = getattr(transform, "transform", transform)
     rotation, translation = pose.rotation, pose.translation
@@ -33,11 +33,13 @@ def transform_points(point_cloud: ArrayLike, transform: Any) -> NDArray[np.float
 
 
 def do_transform_cloud(cloud: Any, transform: Any) -> Any:
-    """Transform a cloud into the parent frame of a transform; fields other than x, y and z do not change.
+    """Transform a point cloud into the parent frame of a transform.
+
+    Only the fields x, y and z change.
 
     Args:
-        cloud: sensor_msgs/msg/PointCloud2.
-        transform: geometry_msgs/msg/TransformStamped, whose header becomes the header of the new cloud.
+        cloud: the point cloud (sensor_msgs/msg/PointCloud2).
+        transform: the transform (geometry_msgs/msg/TransformStamped), whose header becomes the header of the new cloud.
     """
     points = read_points(cloud).copy()
     moved = transform_points(np.stack([points[axis] for axis in _AXES], axis=-1), transform)
@@ -47,7 +49,7 @@ def do_transform_cloud(cloud: Any, transform: Any) -> Any:
 
 
 def to_msg_msg(msg: Any) -> Any:
-    """Return the message unchanged."""
+    """Return the message unchanged; the conversion to a message for types that are messages."""
     return msg
 
 
@@ -55,7 +57,7 @@ from_msg_msg = to_msg_msg
 
 
 def register() -> None:
-    """Register the transformation of point clouds for all buffers."""
+    """Register the transformation of point clouds in the registry that all buffers share."""
     kind = get_message("sensor_msgs/msg/PointCloud2")
     TransformRegistration().add(kind, do_transform_cloud)
     ConvertRegistration().add_to_msg(kind, to_msg_msg)

@@ -32,7 +32,7 @@ class NotImplementedException(Exception):
 
 
 class TransformRegistration:
-    """The functions that transform each type; all objects of this class share one registry."""
+    """The functions that transform each type, in one registry that all objects of this class share."""
 
     _by_type: ClassVar[dict[Any, Transformation]] = {}
 
@@ -50,11 +50,14 @@ class TransformRegistration:
 
     def print_me(self) -> None:
         """Print the registry."""
-        print(self._by_type)  # printing is the purpose of the method
+        print(self._by_type)  # the purpose of this method is to print
 
 
 class ConvertRegistration:
-    """The functions that convert types to and from messages, or to other types; all objects share one registry."""
+    """The functions that convert types to messages, from messages, or to other types.
+
+    All objects of this class share one registry.
+    """
 
     _to_msg: ClassVar[dict[Any, Conversion]] = {}
     _from_msg: ClassVar[dict[Any, Conversion]] = {}
@@ -73,20 +76,34 @@ class ConvertRegistration:
         self._direct[key] = callback
 
     def get_from_msg(self, key: Any) -> Conversion:
-        """Return the conversion from messages to a type; TypeException if it is not registered."""
+        """Return the function that converts messages to a type.
+
+        Raises:
+            TypeException: no such conversion is registered.
+        """
         return _found(self._from_msg, key)
 
     def get_to_msg(self, key: Any) -> Conversion:
-        """Return the conversion from a type to messages; TypeException if it is not registered."""
+        """Return the function that converts a type to messages.
+
+        Raises:
+            TypeException: no such conversion is registered.
+        """
         return _found(self._to_msg, key)
 
     def get_convert(self, key: tuple[Any, Any]) -> Conversion:
-        """Return the conversion from one type to another; TypeException if it is not registered."""
+        """Return the function that converts the first type of a pair to the second.
+
+        Raises:
+            TypeException: no such conversion is registered.
+        """
         return _found(self._direct, key)
 
 
 def convert(a: Any, b_type: Any) -> Any:
-    """Convert a value to another type, through a message if necessary; return a copy if the type is the same.
+    """Convert a value to another type, through a message if necessary.
+
+    If the value has this type already, a copy is returned.
 
     Raises:
         TypeException: the conversion is not registered.
@@ -101,7 +118,7 @@ def convert(a: Any, b_type: Any) -> Any:
 
 
 def Stamped(obj: Any, stamp: Any, frame_id: str) -> Any:
-    """Return the object with a header that has the stamp and the frame."""
+    """Add a header with a stamp and a frame to an object, and return the object."""
     from linkwright.messages import get_message
 
     obj.header = get_message("std_msgs/msg/Header")(frame_id=frame_id, stamp=stamp)

@@ -1,4 +1,4 @@
-"""Register the messages of geometry_msgs for transformation by buffers (``import tf2_geometry_msgs``)."""
+"""Registers the messages of geometry_msgs with the buffers (``import tf2_geometry_msgs``)."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _TRANSFORMATIONS = {
 
 
 def to_msg_msg(msg: Any) -> Any:
-    """Return the message unchanged."""
+    """Return the message unchanged; the conversion to a message for types that are messages."""
     return msg
 
 
@@ -27,7 +27,7 @@ from_msg_msg = to_msg_msg
 
 
 def register() -> None:
-    """Register the transformation of geometry_msgs messages for all buffers."""
+    """Register the transformation of geometry_msgs messages in the registry that all buffers share."""
     for name, transformation in _TRANSFORMATIONS.items():
         kind = get_message(f"geometry_msgs/msg/{name}")
         TransformRegistration().add(kind, transformation)

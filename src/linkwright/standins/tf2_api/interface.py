@@ -22,10 +22,10 @@ class BufferInterface:
         """Transform a stamped object into another frame.
 
         Args:
-            object_stamped: the object, of a registered type: ``import tf2_geometry_msgs`` registers the types of
-                geometry_msgs.
-            target_frame: the other frame.
-            timeout: how long to wait for the transform.
+            object_stamped: the object, whose type must be registered; ``import tf2_geometry_msgs`` registers the types
+                of geometry_msgs.
+            target_frame: the frame to transform the object into.
+            timeout: the maximum time to wait for the transform.
             new_type: the type to convert the result to; None for no conversion.
 
         Raises:
@@ -62,11 +62,11 @@ class BufferInterface:
         return result if new_type is None else convert(result, new_type)
 
     def lookup_transform(self, *_question: Any, **_options: Any) -> Any:
-        """Return the pose of the source frame in the target frame."""
+        """Return the transform from the source frame to the target frame at a time."""
         raise NotImplementedException
 
     def lookup_transform_full(self, *_question: Any, **_options: Any) -> Any:
-        """Return the pose of a source frame at one time in a target frame at another time, through a fixed frame."""
+        """Return the transform between two frames at different times, through a fixed frame."""
         raise NotImplementedException
 
     def can_transform(self, *_question: Any, **_options: Any) -> Any:

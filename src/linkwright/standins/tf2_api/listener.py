@@ -1,4 +1,4 @@
-"""Fill a buffer from the transform topics (tf2_ros ``TransformListener``)."""
+"""Fills a buffer from the transform topics (tf2_ros ``TransformListener``)."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ _AUTHORITY = "default_authority"
 class TransformListener:
     """Adds the transforms of ``/tf`` and ``/tf_static`` to a buffer.
 
-    Its callbacks are in a reentrant group, so that another callback of the node may wait for a transform.
+    The callbacks are in a reentrant group, so that another callback of the node can wait for a transform.
 
     Args:
         buffer: the buffer to fill.
         node: the node that subscribes; None for a separate node.
         spin_thread: whether a separate thread spins the node.
-        qos: the profile for ``/tf``.
-        static_qos: the profile for ``/tf_static``.
+        qos: the QoS profile for ``/tf``.
+        static_qos: the QoS profile for ``/tf_static``.
         tf_topic: the topic to use instead of ``/tf``.
         tf_static_topic: the topic to use instead of ``/tf_static``.
         static_only: whether to subscribe only to ``/tf_static``.
@@ -75,11 +75,11 @@ class TransformListener:
             self.executor = None
 
     def callback(self, data: Any) -> None:
-        """Add the transforms of a message of ``/tf`` to the buffer."""
+        """Add the transforms in a message of ``/tf`` to the buffer."""
         self.buffer.update(data, static=False, authority=_AUTHORITY)
 
     def static_callback(self, data: Any) -> None:
-        """Add the transforms of a message of ``/tf_static`` to the buffer."""
+        """Add the transforms in a message of ``/tf_static`` to the buffer."""
         self.buffer.update(data, static=True, authority=_AUTHORITY)
 
     def _spin(self) -> None:
@@ -98,7 +98,7 @@ class StaticTransformListener(TransformListener):
         buffer: the buffer to fill.
         node: the node that subscribes.
         spin_thread: whether a separate thread spins the node.
-        qos: the profile for ``/tf_static``.
+        qos: the QoS profile for ``/tf_static``.
     """
 
     def __init__(

@@ -1,4 +1,4 @@
-"""Messages on standard error, as in ``xacro.color``."""
+"""Prints coloured messages to standard error, as ``xacro.color`` does."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def is_tty(stream: object) -> bool:
 
 
 def colorize(msg: object, color: str | int | None, file: IO[str] | None = None, alt_text: str | None = None) -> str:
-    """Return a text in a colour if the output is a terminal, otherwise the text after `alt_text`."""
+    """Return a message in a colour if the output is a terminal, otherwise with the prefix `alt_text`."""
     code = _CODES.get(color, 0) if isinstance(color, str) else color
     if code and is_tty(sys.stderr if file is None else file):
         return f"\x1b[{code}m{msg}\x1b[0m"
@@ -25,7 +25,7 @@ def colorize(msg: object, color: str | int | None, file: IO[str] | None = None, 
 def message(
     msg: object, *args: Any, file: IO[str] | None = None, alt_text: str | None = None, color: str | None = None
 ) -> None:
-    """Print a text to standard error."""
+    """Print a message to standard error."""
     stream = sys.stderr if file is None else file
     print(colorize(msg, color, stream, alt_text), *args, file=stream)
 

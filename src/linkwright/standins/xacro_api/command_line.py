@@ -1,4 +1,4 @@
-"""The arguments of the command ``xacro``, as ``xacro.cli`` parses them."""
+"""Parses the arguments of the command ``xacro``, as ``xacro.cli`` does."""
 
 from __future__ import annotations
 
@@ -11,7 +11,9 @@ REMAP = ":="
 
 
 def load_mappings(argv: Iterable[str]) -> dict[str, str]:
-    """Parse the arguments ``name:=value``; empty values and names with a single leading ``_`` are skipped.
+    """Parse the arguments ``name:=value``.
+
+    Empty values and names with a single leading ``_`` are skipped.
 
     Raises:
         RuntimeError: an argument contains ``:=`` twice.
@@ -32,11 +34,12 @@ def process_args(argv: Sequence[str], require_input: bool = True) -> tuple[argpa
     """Parse the options and the file name of the command line.
 
     Args:
-        argv: the arguments, without the command.
-        require_input: whether exactly one file is required; if not, None is returned for a missing file.
+        argv: the arguments, without the name of the command.
+        require_input: whether exactly one file is required.
 
     Returns:
-        The options ``output``, ``just_deps``, ``in_order``, ``root_dir``, ``verbosity`` and ``mappings``, and the file.
+        The options ``output``, ``just_deps``, ``in_order``, ``root_dir``, ``verbosity`` and ``mappings``, and the
+        file, or None if no file is given.
 
     Raises:
         SystemExit: a usage error.

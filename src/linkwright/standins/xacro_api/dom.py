@@ -1,7 +1,7 @@
-"""Convert between the trees of `linkwright.xmltree` and documents of ``xml.dom.minidom``.
+"""Converts between the trees of `linkwright.xmltree` and documents of ``xml.dom.minidom``.
 
-The nodes created here are minidom's, with two differences: elements are written as ros/xacro writes them, and elements
-and texts record their locations. (ros/xacro replaces minidom's writing method for the entire process instead.)
+The nodes are minidom's, with two differences: elements are serialized in the format of ros/xacro, and elements and
+texts record their locations. ros/xacro instead replaces minidom's writing method for the entire process.
 """
 
 from __future__ import annotations
@@ -20,13 +20,16 @@ class DomElement(minidom.Element):
     """A minidom element that records its location.
 
     Attributes:
-        place: its source text and offset, or None.
+        place: the source text and the offset of the element, or None.
     """
 
     place: tuple[SourceText, int] | None = None
 
     def writexml(self, writer: Any, indent: str = "", addindent: str = "", newl: str = "") -> None:
-        """Write the element with sorted attributes, without blank text; on one line if it contains only text."""
+        """Write the element with sorted attributes and without whitespace-only text.
+
+        An element that contains only text is written on one line.
+        """
         attributes = dict(self.attributes.items())
         written = "".join(f' {name}="{escape_text(attributes[name])}"' for name in sorted(attributes))
         writer.write(f"{indent}<{self.tagName}{written}")
@@ -44,27 +47,27 @@ class DomElement(minidom.Element):
 
 
 class DomText(minidom.Text):
-    """Character data that is written identically in all versions of Python.
+    """Character data that is serialized identically in all versions of Python.
 
     Attributes:
-        place: its source text and offset, or None.
+        place: the source text and the offset of the character data, or None.
     """
 
     __slots__ = ("place",)
     place: tuple[SourceText, int] | None
 
     def writexml(self, writer: Any, indent: str = "", _addindent: str = "", newl: str = "") -> None:
-        """Write the text."""
+        """Write the character data, escaped."""
         writer.write(f"{indent}{escape_text(self.data)}{newl}")
 
 
 def escape_text(text: str) -> str:
-    """Escape a text for use in element content and attributes."""
+    """Escape a string for use in element content and attributes."""
     return text.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;").replace(">", "&gt;")
 
 
 def fill(target: minidom.Document, document: Document) -> None:
-    """Fill a document from a tree; the existing root element is reused if it is a `DomElement`."""
+    """Fill a minidom document from a tree; an existing root element is reused if it is a `DomElement`."""
     old = target.documentElement
     kept = old if isinstance(old, DomElement) else None
     for node in list(target.childNodes):
@@ -80,7 +83,7 @@ def fill(target: minidom.Document, document: Document) -> None:
 
 
 def read(document: minidom.Document) -> Document:
-    """Return the tree of a document; nodes that `fill` created keep their places."""
+    """Convert a minidom document to a tree; nodes that `fill` created keep their locations."""
     root = document.documentElement
     element = _element(root)
     pending: list[tuple[Any, Element]] = [(root, element)]
@@ -146,7 +149,11 @@ def _tree(owner: minidom.Document, root: Element, kept: DomElement | None) -> Do
 def _create(
     owner: minidom.Document, element: Element, spaces: Mapping[str, str], kept: DomElement | None
 ) -> tuple[DomElement, Mapping[str, str]]:
-    """Return the node for an element, without its children, and the namespaces that apply to its content."""
+    """Create the minidom element for an element, without its children.
+
+    Returns:
+        The minidom element, and the namespaces in scope in its content.
+    """
     declared = {name: value for name, value in element.attributes.items() if name.startswith("xmlns")}
     if declared:
         spaces = {**spaces, **{name.partition(":")[2]: value for name, value in declared.items()}}

@@ -1,4 +1,4 @@
-"""The exceptions of the module ``xacro`` that programs catch, with Linkwright's diagnostics."""
+"""The exceptions of the module ``xacro`` that programs catch, which carry Linkwright's diagnostics."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ class XacroException(LinkwrightError):
 
     Args:
         msg: the message.
-        suffix: a suffix of the message.
-        exc: the cause.
-        macro: the macro with the error.
+        suffix: a text to append to the message.
+        exc: the exception that caused this error.
+        macro: the macro that contains the error.
 
     Attributes:
-        suffix: as given.
-        exc: as given.
+        suffix: the argument `suffix`.
+        exc: the argument `exc`.
         macros: the macro and the macros that call it.
     """
 
@@ -38,7 +38,7 @@ class ExpansionError(XacroException, DescriptionError):
     """Raised when a file cannot be expanded.
 
     Attributes:
-        call: the file to expand.
+        call: the call of xacro with the file to expand.
     """
 
     def __init__(self, call: XacroCall, diagnostics: Iterable[Diagnostic]) -> None:
@@ -48,7 +48,7 @@ class ExpansionError(XacroException, DescriptionError):
 
 
 class TextError(XacroException):
-    """Raised when a description given as text cannot be expanded."""
+    """Raised when a description given as a string cannot be expanded."""
 
     def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:
         LinkwrightError.__init__(self, *diagnostics)
@@ -57,7 +57,10 @@ class TextError(XacroException):
 
 
 class MalformedError(LinkwrightError, ExpatError):
-    """Raised for a description that is not XML; `lineno` and `offset` give the line and the column."""
+    """Raised for a description that is not XML.
+
+    `lineno` and `offset` are the line and the column of the error.
+    """
 
     def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:
         LinkwrightError.__init__(self, *diagnostics)
@@ -71,7 +74,7 @@ class MalformedFileError(MalformedError, DescriptionError):
     """Raised for a file that is not XML, or that includes such a file.
 
     Attributes:
-        call: the file to expand.
+        call: the call of xacro with the file to expand.
     """
 
     def __init__(self, call: XacroCall, diagnostics: Iterable[Diagnostic]) -> None:
@@ -80,11 +83,11 @@ class MalformedFileError(MalformedError, DescriptionError):
 
 
 def translate_error(error: LinkwrightError, call: XacroCall | None) -> LinkwrightError:
-    """Convert an error of the engine to an error that programs written for ``xacro`` expect.
+    """Convert an error of the engine to an exception that programs written for ``xacro`` expect.
 
     Args:
         error: the error of the engine.
-        call: the file to expand; None for a text.
+        call: the call of xacro with the file to expand; None for a description given as a string.
     """
     diagnostics = error.diagnostics
     if isinstance(error, (XacroException, MalformedError)):

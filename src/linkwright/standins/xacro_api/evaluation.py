@@ -1,4 +1,4 @@
-"""Evaluate texts and expressions as the module ``xacro`` does."""
+"""Evaluates attribute values and expressions as the module ``xacro`` does."""
 
 from __future__ import annotations
 
@@ -21,21 +21,23 @@ _Result = TypeVar("_Result")
 
 
 def eval_text(text: str, symbols: Mapping[str, Any] | None) -> Any:
-    """Evaluate a text with ``${...}`` and ``$(...)``; a text that is a single expression keeps the type of its value.
+    """Evaluate a string with ``${...}`` and ``$(...)``.
+
+    If the string is a single expression, the result has the type of the expression's value.
 
     Args:
-        text: the text.
-        symbols: names for expressions, in addition to the names of the language.
+        text: the string.
+        symbols: names for expressions, in addition to the names that xacro provides.
 
     Raises:
-        XacroException: the text cannot be evaluated.
+        XacroException: the string cannot be evaluated.
     """
     session = _session()
     return _checked(lambda: session.evaluate(text, _scope(session, symbols)))
 
 
 def safe_eval(expr: str, globals: Mapping[str, Any] | None, locals: Mapping[str, Any] | None = None) -> Any:
-    """Evaluate an expression with the names that descriptions may use; see `eval_text`.
+    """Evaluate an expression with the names that are available in descriptions; see `eval_text`.
 
     Raises:
         XacroException: the expression cannot be evaluated, or is not allowed.
@@ -60,10 +62,10 @@ def eval_extension(s: str) -> str:
 
 
 def load_yaml(filename: str) -> Any:
-    """Load a YAML file; the keys of its mappings can be read as attributes too.
+    """Load a YAML file; the keys of its mappings are also available as attributes.
 
     Raises:
-        XacroException: there is no such file, or it is not YAML.
+        XacroException: there is no such file, or the file is not YAML.
     """
     session = _session()
     STATE.all_includes.append(abs_filename_spec(filename))
@@ -71,7 +73,7 @@ def load_yaml(filename: str) -> Any:
 
 
 def dotify(mapping: Any = (), **items: Any) -> YamlDictWrapper:
-    """Return a mapping whose keys, at all levels, can be read as attributes too."""
+    """Return a mapping whose keys, at all levels, are also available as attributes."""
     result: YamlDictWrapper = YamlListWrapper.wrap(dict(mapping, **items))
     return result
 
@@ -81,7 +83,7 @@ def get_boolean_value(value: Any, condition: object = None) -> bool:
 
     Args:
         value: the value.
-        condition: the text of the condition, for the message.
+        condition: the source of the condition, for the error message.
 
     Raises:
         XacroException: the value is a string that is neither true, false nor an integer.
@@ -94,17 +96,20 @@ def get_boolean_value(value: Any, condition: object = None) -> bool:
 
 
 def is_valid_name(name: str) -> bool:
-    """Return whether a property or macro may have a name: a Python identifier that is not a keyword."""
+    """Return whether a string is valid as the name of a property or macro.
+
+    A valid name is a Python identifier that is not a keyword.
+    """
     return name.isidentifier() and not keyword.iskeyword(name)
 
 
 def create_global_symbols() -> dict[str, Any]:
-    """Return the names that the language provides in expressions."""
+    """Return the names that xacro provides in expressions, with their values."""
     return dict(_session().globals.values)
 
 
 class ConstructUnits(enum.Enum):
-    """The YAML tags of values with a unit, and the size of each unit in metres or radians."""
+    """The YAML tags for values with units, each with the size of the unit in metres or radians."""
 
     radians = ("!radians", yamldata.UNITS["!radians"])
     degrees = ("!degrees", yamldata.UNITS["!degrees"])
@@ -115,7 +120,7 @@ class ConstructUnits(enum.Enum):
 
 
 class YamlDictWrapper(dict[Any, Any]):
-    """A mapping whose keys can be read as attributes too."""
+    """A mapping whose keys are also available as attributes."""
 
     def __getattr__(self, item: str) -> Any:
         try:
@@ -138,7 +143,7 @@ class YamlListWrapper(list[Any]):
 
 
 class _View(dict[str, Any]):
-    """A view of the names in a table, which may evaluate its values on access."""
+    """A dictionary view of a symbol table, which evaluates values on access if necessary."""
 
     __slots__ = ("_session", "_table")
 
@@ -154,7 +159,7 @@ class _View(dict[str, Any]):
         value = self._table[name]
         if isinstance(value, (YamlDictWrapper, YamlListWrapper)):
             return yamldata.dotted(value)
-        if isinstance(value, dict) and hasattr(value, "unevaluated"):  # the value is the table of a namespace
+        if isinstance(value, dict) and hasattr(value, "unevaluated"):  # the value is the symbol table of a namespace
             return Namespace(None, self._session, _View(value, self._session))
         return value
 

@@ -1,4 +1,4 @@
-"""Macros in the API of the module ``xacro``."""
+"""Macros as the module ``xacro`` presents them to programs."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ class Macro:
     """A macro.
 
     Attributes:
-        name: its name.
-        body: the element that defines it.
-        params: the names of its parameters.
-        defaultmap: parameter -> whether to use the caller's property, and the text of its default.
+        name: the name of the macro.
+        body: the element that defines the macro.
+        params: the names of the parameters.
+        defaultmap: parameter -> the name of the caller's property to use, if any, and the source of the default.
         history: for each definition, the files that were being processed at that time.
     """
 
@@ -30,14 +30,15 @@ class Macro:
 
 
 def parse_macro_arg(s: str) -> tuple[str, tuple[str | None, str | None] | None, str]:
-    """Parse the first parameter in a list of parameters.
+    """Parse the first parameter in a list of macro parameters.
 
     Returns:
-        The name of the parameter; its default; and the rest of the list. The default is the name of the caller's
-        property to use (or None) and a text (or None); it is None for a parameter without a default.
+        The name of the parameter, its default and the rest of the list. The default is None for a parameter without a
+        default. Otherwise it is a pair of the name of the caller's property to use, or None, and a default text, or
+        None.
 
     Raises:
-        XacroException: a quote is not closed.
+        XacroException: a quotation mark is not closed.
         IndexError: the list is empty.
     """
     try:
@@ -54,10 +55,10 @@ def parse_macro_arg(s: str) -> tuple[str, tuple[str | None, str | None] | None, 
 
 
 def resolve_macro(fullname: str, macros: Mapping[str, Any], symbols: Mapping[str, Any]) -> tuple[Any, Any, Any]:
-    """Look up a macro by name, which may have namespace prefixes.
+    """Look up a macro by its name, which can have namespace prefixes.
 
     Returns:
-        The table of macros, the table of properties and the macro.
+        The table of macros and the table of properties that contain the macro, and the macro.
 
     Raises:
         KeyError: there is no such macro.

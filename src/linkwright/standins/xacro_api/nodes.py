@@ -1,4 +1,4 @@
-"""Functions for minidom nodes that the module ``xacro`` offers to programs."""
+"""Functions of the module ``xacro`` that operate on minidom nodes."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ def next_sibling_element(node: Any) -> Any:
 
 
 def replace_node(node: Any, by: Any, content_only: bool = False) -> None:
-    """Replace a node by another node, by several nodes, or by nothing.
+    """Replace a node by other nodes, or remove the node.
 
     Args:
         node: the node to replace.
-        by: a node, a list of nodes, or None.
-        content_only: whether to insert the children of the nodes instead.
+        by: a node, a list of nodes, or None to remove `node`.
+        content_only: whether to insert the children of these nodes instead of the nodes.
     """
     parent = node.parentNode
     for new in by if isinstance(by, list) else [] if by is None else [by]:
@@ -49,7 +49,7 @@ def replace_node(node: Any, by: Any, content_only: bool = False) -> None:
 
 
 def attribute(tag: Any, a: str) -> str | None:
-    """Return the value of an attribute, or None."""
+    """Return the value of an attribute, or None if the element does not have it."""
     return tag.getAttribute(a) if tag.hasAttribute(a) else None
 
 
@@ -71,7 +71,7 @@ def reqd_attrs(tag: Any, attrs: Sequence[str]) -> list[str]:
 
 
 def check_attrs(tag: Any, required: Sequence[str], optional: Sequence[str]) -> list[Any]:
-    """Return the values of the attributes that an element may have, and print warnings about other attributes.
+    """Return the values of required and optional attributes, and warn of any other attributes.
 
     Raises:
         RuntimeError: a required attribute is missing.
@@ -87,7 +87,7 @@ def check_attrs(tag: Any, required: Sequence[str], optional: Sequence[str]) -> l
 
 
 def import_xml_namespaces(parent: Any, attributes: Any) -> None:
-    """Copy namespace declarations to an element, and print warnings about contradictory ones."""
+    """Copy namespace declarations to an element, and print a warning for each contradiction."""
     for name, value in attributes.items():
         if not name.startswith("xmlns:"):
             continue
@@ -105,7 +105,7 @@ def import_xml_namespaces(parent: Any, attributes: Any) -> None:
 
 
 def remove_previous_comments(node: Any) -> None:
-    """Remove the comments directly above a node, with neither a blank line nor text in between."""
+    """Remove the comments directly above a node, up to a blank line or text."""
     following, previous = node.nextSibling, node.previousSibling
     while previous is not None:
         if previous.nodeType == _TEXT and previous.data.isspace() and previous.data.count("\n") <= 1:
@@ -121,7 +121,7 @@ def remove_previous_comments(node: Any) -> None:
 
 
 def grab_macro(elt: Any, macros: dict[str, Any]) -> None:
-    """Move the definition of a macro from a document to a table.
+    """Move the definition of a macro from the document to a table of macros.
 
     Raises:
         XacroException: the name or the parameters are invalid.
@@ -147,7 +147,7 @@ def grab_macro(elt: Any, macros: dict[str, Any]) -> None:
 
 
 def grab_property(elt: Any, table: Table) -> None:
-    """Move the definition of a property from a document to a table.
+    """Move the definition of a property from the document to a table of properties.
 
     Raises:
         XacroException: the name or the attributes are invalid.
@@ -187,7 +187,7 @@ def eval_default_arg(forward_variable: str | None, default: str | None, symbols:
     """Return the default value of a macro parameter that the call omits.
 
     Raises:
-        XacroException: there is neither a property nor a default.
+        XacroException: there is neither a property of the caller nor a default.
     """
     if forward_variable is not None and forward_variable in symbols:
         return symbols[forward_variable]

@@ -1,4 +1,4 @@
-"""Expand files, texts and documents as the module ``xacro`` does."""
+"""Expands files, strings and documents as the module ``xacro`` does."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ _FAILED = 2
 class XacroDocument(minidom.Document):
     """A document that records its file and its expansion.
 
-    A running launch therefore knows the locations in the text, and can reload it when a file changes.
+    This information lets a running launch map the URDF to locations in the sources, and reload a changed file.
     """
 
     call: XacroCall | None = None
     expansion: Expansion | None = None
 
     def toprettyxml(self, *arguments: Any, **named: Any) -> Any:
-        """Return the document as text; see ``xml.dom.minidom``."""
+        """Serialize the document; see ``xml.dom.minidom``."""
         text = super().toprettyxml(*arguments, **named)
         descriptions, expansion = current_descriptions(), self.expansion
         if descriptions is None or self.call is None or expansion is None or not isinstance(text, str):
@@ -51,11 +51,11 @@ def parse(inp: Any, filename: str | Path | None = None) -> minidom.Document:
     """Parse a description into a document, without expanding it.
 
     Args:
-        inp: its text, an open file, or a document, which is returned; None to open `filename`.
-        filename: the file; or the name of the text, for messages.
+        inp: the description as a string or an open file; a document, which is returned; or None to open `filename`.
+        filename: the file, or a name for the string in messages.
 
     Raises:
-        xml.parsers.expat.ExpatError: it is not XML.
+        xml.parsers.expat.ExpatError: the description is not XML.
         XacroException: the file cannot be read.
         TypeError: `inp` is not readable.
     """
@@ -89,7 +89,7 @@ def process_doc(doc: minidom.Document, mappings: Mapping[str, Any] | None = None
 
     Args:
         doc: the document.
-        mappings: the arguments, name -> value; not modified.
+        mappings: the values of arguments by name, which are not modified.
         options: `verbosity`; other options are ignored.
 
     Raises:
@@ -115,8 +115,8 @@ def process_file(
     """Expand a file into a document.
 
     Args:
-        input_file_name: the file.
-        mappings: the arguments, name -> value; not modified.
+        input_file_name: the path of the file.
+        mappings: the values of arguments by name, which are not modified.
         options: `verbosity`; other options are ignored.
 
     Returns:
@@ -150,24 +150,24 @@ def process(
     verbosity: int = 1,
     mappings: Mapping[str, Any] | None = None,
 ) -> str:
-    """Return the expanded text of a file, or the names of the files it includes; see `process_file`.
+    """Expand a file to a string, or list the files that it includes; see `process_file`.
 
     Args:
-        input_file_name: the file.
+        input_file_name: the path of the file.
         just_deps: whether to return the names of included files.
         xacro_ns: ignored.
         verbosity: the amount of output.
-        mappings: the arguments, name -> value.
+        mappings: the values of arguments by name.
     """
     document = process_file(input_file_name, mappings=mappings, verbosity=verbosity)
     return _result(document, just_deps=just_deps)
 
 
 def open_output(output_filename: str | Path | None) -> IO[str]:
-    """Open a file for writing, creating its folder if needed; standard output for None.
+    """Open a file for writing and create its folder if necessary; for None, return standard output.
 
     Raises:
-        XacroException: it cannot be opened.
+        XacroException: the file cannot be opened.
     """
     if output_filename is None:
         return sys.stdout
@@ -226,7 +226,7 @@ def _words(mappings: Mapping[str, Any] | None) -> tuple[tuple[str, str], ...]:
 
 
 def _expand(tree: Document, file: str | None, mappings: Mapping[str, Any] | None, call: XacroCall | None) -> Expansion:
-    """Expand a tree and print its diagnostics, unless a running launch reports them itself."""
+    """Expand a tree, and print its diagnostics unless a running launch reports them."""
     descriptions = current_descriptions()
     packages = descriptions.finder if descriptions is not None else None
     root = "" if str(STATE.root_dir) == os.curdir else str(STATE.root_dir)
@@ -258,5 +258,5 @@ def _print_remarks(diagnostics: Sequence[Diagnostic]) -> None:
 
 
 def _is_printed(diagnostic: Diagnostic) -> bool:
-    """Return whether the description has already printed a diagnostic, for example with ``xacro.message``."""
+    """Return whether the expansion has already printed a diagnostic, such as ``xacro.message``."""
     return diagnostic.code.startswith("XAC7")

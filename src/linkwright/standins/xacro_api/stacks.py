@@ -1,4 +1,4 @@
-"""The state of the module ``xacro``: the files and macros being processed."""
+"""The global state of the module ``xacro``: the files and macros that are being processed."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ _PREFIX = "xacro:"
 
 
 class State:
-    """The variables of the module ``xacro``.
+    """The module variables of ``xacro``.
 
     Attributes:
-        filestack: the files being processed, innermost last; None for a text.
+        filestack: the files being processed, innermost last; None for a description given as a string.
         macrostack: the macros being called, innermost last.
         root_dir: the base folder of relative paths.
-        verbosity: 0 to 4.
+        verbosity: the amount of output, from 0 to 4.
         all_includes: the files that were included or loaded since the process began.
         arguments: the arguments of the current expansion.
     """
@@ -54,7 +54,7 @@ def _of_state(name: str) -> property:
 
 
 class LiveModule(ModuleType):
-    """A module whose variables are those of `STATE`, so that programs can read and set them."""
+    """A module whose variables are the attributes of `STATE`, so that programs can read and set them."""
 
     filestack = _of_state("filestack")
     macrostack = _of_state("macrostack")
@@ -69,13 +69,13 @@ def share_state() -> None:
 
 
 def init_stacks(file: str | Path | None) -> None:
-    """Reset the stacks to start with a file; None for a text."""
+    """Reset the stacks; the file stack then contains a file, or None for a description as a string."""
     STATE.filestack = [None if file is None else str(file)]
     STATE.macrostack = []
 
 
 def abs_filename_spec(filename_spec: str) -> str:
-    """Resolve a file name against the folder of the current file, unless the name is absolute."""
+    """Return an absolute file name; a relative name is resolved in the folder of the current file."""
     if os.path.isabs(filename_spec):  # noqa: PTH117 - as written
         return filename_spec
     current = STATE.filestack[-1] if STATE.filestack else None
@@ -84,7 +84,7 @@ def abs_filename_spec(filename_spec: str) -> str:
 
 
 def print_location() -> None:
-    """Print the macros and files being processed to standard error, innermost first."""
+    """Print the macros and files that are being processed to standard error, innermost first."""
     words = "when instantiating macro:"
     for macro in reversed(STATE.macrostack or []):
         file = macro.history[-1][-1] if macro.history and macro.history[-1] else None
@@ -97,7 +97,7 @@ def print_location() -> None:
 
 
 class StackExpander(Expander):
-    """An expander that notifies its session of errors."""
+    """An expander that reports errors to its session."""
 
     session: StackSession
 
@@ -108,7 +108,7 @@ class StackExpander(Expander):
 
 
 class StackSession(Session):
-    """A session that keeps `STATE` up to date.
+    """A session that updates `STATE` during the expansion.
 
     Attributes:
         directives: the directives of the expansion.
@@ -135,7 +135,7 @@ class StackSession(Session):
         return super().read(path)
 
     def call(self, expander: Expander, site: Site) -> None:
-        """Expand a macro call."""
+        """Expand a macro call, with the macro on the stack."""
         self._within(call_macro, expander, site, site.node.tag[len(_PREFIX) :])
 
     def depends_on(self, file: str) -> None:
@@ -144,12 +144,12 @@ class StackSession(Session):
         STATE.all_includes.append(file)
 
     def keep_place(self) -> None:
-        """Record the place of the first error, because expansion continues after an error."""
+        """Save the stacks at the first error, because the expansion continues after an error."""
         if self._mistake is None:
             self._mistake = (list(STATE.filestack or []), list(STATE.macrostack or []))
 
     def return_to_mistake(self) -> None:
-        """Restore the stacks to their state at the first error, because the expansion has failed."""
+        """Restore the stacks as they were at the first error, after the expansion has failed."""
         if self._mistake is not None:
             STATE.filestack, STATE.macrostack = self._mistake
 
@@ -184,7 +184,7 @@ class StackSession(Session):
             return
         stack.append(known[1])
         directive(expander, site)
-        stack.pop()  # only on success: after an error, the stack shows where it occurred
+        stack.pop()  # not after an error, when the stack shows the location of the error
 
     def _print_location(self, *_: Any) -> str:
         print_location()

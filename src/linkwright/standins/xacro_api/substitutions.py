@@ -1,4 +1,4 @@
-"""Resolve substitution arguments as ``xacro.substitution_args`` does for programs."""
+"""Resolves substitution arguments as ``xacro.substitution_args`` does."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ class SubstitutionException(XacroException):
 
 
 class ArgException(SubstitutionException):
-    """Raised when an argument is neither declared nor given."""
+    """Raised when an argument is neither set by the caller nor declared with a default."""
 
 
 def resolve_args(
     arg_str: str | None, context: Mapping[str, Any] | None = None, filename: str | None = None
 ) -> str | None:
-    """Return a text with every ``$(...)`` replaced.
+    """Replace every ``$(...)`` in a string.
 
     Args:
-        arg_str: the text; None or an empty text is returned unchanged.
-        context: its key ``arg`` has the arguments, name -> value.
-        filename: the file of the text, to whose folder ``$(dirname)`` refers.
+        arg_str: the string; None or an empty string is returned unchanged.
+        context: the dictionary whose key ``arg`` contains the arguments by name.
+        filename: the file that contains the string, for ``$(dirname)``.
 
     Raises:
         ArgException: an argument is missing.

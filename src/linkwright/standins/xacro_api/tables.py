@@ -1,4 +1,4 @@
-"""Tables of properties and macros in the API of the module ``xacro``."""
+"""The tables of properties and macros as the module ``xacro`` presents them to programs."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ _DOCUMENT, _EVERYWHERE = 2, 3
 
 
 class Table(dict[str, Any]):
-    """Names and their values, with a parent table; texts are evaluated on first access.
+    """A symbol table with a parent table, which evaluates strings on first access.
 
     Args:
-        parent: the parent table; a plain dict contains the names of the language.
+        parent: the parent table; a plain dict is the table of the names that xacro provides.
 
     Attributes:
-        parent: as given.
+        parent: the argument `parent`.
         root: the outermost table.
-        depth: the number of parent tables, excluding the table of the language.
-        unevaluated: the names whose texts have not been evaluated.
-        recursive: the names whose evaluation is in progress.
+        depth: the number of parent tables, excluding the table of the names that xacro provides.
+        unevaluated: the names whose values are not evaluated yet.
+        recursive: the names that are being evaluated.
     """
 
     def __init__(self, parent: dict[str, Any] | None = None) -> None:
@@ -66,7 +66,7 @@ class Table(dict[str, Any]):
         return f"{dict.__repr__(self)}\n  parent: {self.parent}"
 
     def top(self) -> Table:
-        """Return the outermost table, excluding the table of the language."""
+        """Return the outermost table, excluding the table of the names that xacro provides."""
         table = self
         while table.parent is not table.root and isinstance(table.parent, Table):
             table = table.parent
@@ -110,7 +110,7 @@ class Table(dict[str, Any]):
 
 
 class NameSpace(Table):
-    """The table of an include with a namespace; its names can be read as attributes too."""
+    """The symbol table of an include with a namespace; its names are also available as attributes."""
 
     def __getattr__(self, item: str) -> Any:
         if item.startswith("__"):

@@ -1,9 +1,10 @@
-"""Hold samples back until readers have acknowledged the large samples before them.
+"""Holds samples back until readers have acknowledged the large samples before them.
 
 A reader of Fast DDS that has received part of a sample requests the rest. If a newer sample has replaced that sample in
-the writer's history, Cyclone answers with a GAP, and Fast DDS up to 3.6 then frees the sample but keeps a reference to
-it: the next ``take`` of the reader never returns (`docs/decisions/0095-large-messages-to-fast-dds.md`). Therefore no
-sample replaces a large one that may still be requested. Newer messages replace the samples that wait here instead.
+the writer's history, Cyclone answers with a GAP. Fast DDS up to 3.6 then frees the sample but keeps a reference to it,
+and the next ``take`` of the reader never returns (`docs/decisions/0095-large-messages-to-fast-dds.md`). Therefore no
+sample replaces a large one that may still be requested. Newer messages replace the samples that are queued here
+instead.
 """
 
 from __future__ import annotations
@@ -18,10 +19,10 @@ PATIENCE = 3.0
 
 
 class Backlog:
-    """A queue of samples for one reliable writer that keeps only the last samples.
+    """A queue of samples for one reliable writer, limited to the newest samples.
 
     Args:
-        depth: the number of samples that the writer keeps.
+        depth: the number of samples that the writer stores.
         fragment_size: the maximum size in bytes of a sample that is sent in one packet; larger samples may be received
             in part.
         write: writes a sample.
@@ -48,10 +49,10 @@ class Backlog:
         self._waiting: deque[bytes] = deque(maxlen=depth)
         self._written = 0
         self._late_since: float | None = None
-        self._lock = threading.RLock()  # reentrant: the warning of a failed write may be sent here
+        self._lock = threading.RLock()  # reentrant: the warning of a failed write may use this writer
 
     def send(self, sample: bytes) -> bool:
-        """Write a sample, or queue it; return whether a sample is queued."""
+        """Write a sample, or queue it; return whether any sample is queued."""
         with self._lock:
             if not self._written and len(sample) <= self._fragment_size:
                 self._write(sample)
@@ -60,7 +61,7 @@ class Backlog:
             return self._write_what_fits()
 
     def review(self) -> bool:
-        """Write the queued samples that may be written now; return whether a sample is still queued."""
+        """Write the queued samples that may be written now; return whether any remain queued."""
         with self._lock:
             return self._write_what_fits()
 

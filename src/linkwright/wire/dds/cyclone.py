@@ -1,13 +1,13 @@
-"""Bindings for the parts of the C interface of Eclipse Cyclone DDS that Linkwright uses, from the `cyclonedds` wheel.
+"""Bindings for the C functions of Eclipse Cyclone DDS that Linkwright uses.
 
-The Python classes of `cyclonedds` are built on the same functions. Two of their properties do not suit a process that
-publishes from the thread of an event loop: `DataWriter.write` holds Python's global interpreter lock (GIL) while it
-waits for slow readers, and every entity's `__del__` deletes it in whatever thread the garbage collector runs. So the
-Python package is used only for functions that C does not offer: topics for types described in Python, and taking
-samples as bytes.
+The functions are those of the wheel `cyclonedds`, whose Python classes are built on them. Two properties of these
+classes do not suit a process that publishes from the thread of an event loop: `DataWriter.write` holds Python's global
+interpreter lock (GIL) while it waits for slow readers, and every entity's `__del__` deletes it in whatever thread the
+garbage collector runs. So the Python package is used only where there is no C function: topics for types described in
+Python, and taking samples as bytes.
 
-Functions that may wait are called with the GIL released, and quick functions with the GIL held: releasing it costs up
-to five milliseconds each time when another thread is computing.
+Functions that may wait are called with the GIL released, and quick functions with the GIL held, because releasing it
+costs up to five milliseconds each time when another thread is computing.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ SUBSCRIPTION_MATCHED = 1 << 12
 
 
 class Sample(c.Structure):
-    """A sample for a writer of a type described in Python: serialized bytes."""
+    """A sample for a writer of a type described in Python, as serialized bytes."""
 
     _fields_ = (("data", c.c_char_p), ("size", c.c_size_t))
 
@@ -162,7 +162,7 @@ class CycloneError(Exception):
     """Raised when a call of Cyclone DDS fails.
 
     Attributes:
-        code: its return code, which is negative.
+        code: the return code, which is negative.
     """
 
     def __init__(self, code: int, what: str) -> None:
@@ -171,7 +171,7 @@ class CycloneError(Exception):
 
 
 class Cyclone:
-    """The bound functions, under their C names, and the parts of the Python package that are used."""
+    """The bound C functions, under their C names, and the parts of the Python package in use."""
 
     def __init__(self) -> None:
         _open_package()
@@ -201,7 +201,7 @@ class Cyclone:
         return buffer.raw
 
     def matched(self, entity: int, *, writer: bool) -> list[int]:
-        """Return the instance handles of the remote endpoints that a writer or a reader is matched with."""
+        """Return the instance handles of the remote endpoints that match a writer or a reader."""
         function = self.dds_get_matched_subscriptions if writer else self.dds_get_matched_publications
         size = 64
         while True:
@@ -212,7 +212,7 @@ class Cyclone:
             size = count + 16
 
     def writer_guid(self, reader: int, handle: int) -> bytes:
-        """Return the GUID of a remote writer that a reader is matched with; empty if the writer has left."""
+        """Return the GUID of a remote writer matched with a reader; empty if the writer has left."""
         data = self.dds_get_matched_publication_data(reader, handle)
         if not data:
             return b""
@@ -222,7 +222,7 @@ class Cyclone:
             self.dds_builtintopic_free_endpoint(data)
 
     def user_data(self, qos: int) -> bytes:
-        """Return the USER_DATA of a set of policies."""
+        """Return the USER_DATA in a set of policies; empty if there is none."""
         value, size = c.c_void_p(), c.c_size_t()
         if not self.dds_qget_userdata(qos, c.byref(value), c.byref(size)) or not value.value:
             return b""
@@ -232,17 +232,17 @@ class Cyclone:
             self.dds_free(value)
 
     def entity_name(self, qos: int) -> str:
-        """Return the name that a participant has given itself; empty if it has none."""
+        """Return the name that a participant announces for itself; empty if there is none."""
         value = c.c_void_p()
         return self._text(value) if self.dds_qget_entity_name(qos, c.byref(value)) else ""
 
     def property(self, qos: int, name: str) -> str:
-        """Return the value of a property that a participant announces; empty if it does not announce the property."""
+        """Return the value of a property that a participant announces; empty if it is not announced."""
         value = c.c_void_p()
         return self._text(value) if self.dds_qget_prop(qos, name.encode(), c.byref(value)) else ""
 
     def _text(self, value: c.c_void_p) -> str:
-        """Return a string that Cyclone has allocated, and free it."""
+        """Return a string that Cyclone has allocated, and free Cyclone's memory."""
         if not value.value:
             return ""
         try:
@@ -254,8 +254,8 @@ class Cyclone:
 def _open_package() -> None:
     """Make the package `cyclonedds` import its modules on first use instead of all at once.
 
-    Its ``__init__`` imports them all, which takes several times as long as importing the modules used here. Other code
-    that imports the package in this process finds everything in it as before.
+    The package's ``__init__`` imports all modules, which takes several times as long as importing those used here.
+    Other code that imports the package in this process finds everything in it as before.
     """
     spec = find_spec("cyclonedds")
     if "cyclonedds" in sys.modules or spec is None:
@@ -276,16 +276,16 @@ def _submodule(name: str) -> Any:
 
 @lru_cache(maxsize=1)
 def load() -> Cyclone:
-    """Return the library, which is loaded on first use."""
+    """Return the bound library, loading it on first use."""
     return Cyclone()
 
 
 def check_call(code: int, what: str) -> int:
-    """Return the result of a call if it succeeded.
+    """Return the result of a successful call.
 
     Args:
         code: the return code of the call.
-        what: names the attempt, for the error.
+        what: a description of the call, for the error.
 
     Raises:
         CycloneError: the call failed.
@@ -302,7 +302,7 @@ def describe(code: int) -> str:
 
 
 def write(writer: int, data: bytes) -> int:
-    """Write a sample; may wait for slow readers, with the GIL released.
+    """Write a sample. This may wait for slow readers, with the GIL released.
 
     Args:
         writer: the writer.

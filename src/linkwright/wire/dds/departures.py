@@ -1,9 +1,10 @@
-"""Distinguish publishers that were lost (killed, crashed, out of reach) from publishers that left in order.
+"""Tells lost publishers (killed, crashed, out of reach) from those that left in order.
 
-A publisher that leaves announces it: ROS 2 withdraws an endpoint from ``ros_discovery_info`` before it removes it from
-the domain (rmw_dds_common), and so do we. An endpoint that disappears without being withdrawn is lost: its participant
-was silent for longer than its lease, or was removed from the domain when a process failed. If a participant announces
-its process on this machine, the end of that process decides, without waiting for the lease to expire.
+A publisher that leaves announces this: ROS 2 withdraws an endpoint from ``ros_discovery_info`` before removing it from
+the domain (rmw_dds_common), and so does Linkwright. An endpoint that disappears without being withdrawn is lost: its
+participant was silent for longer than its lease, or was removed from the domain when a process failed. If a participant
+announces that its process runs on this machine, the end of that process decides, without waiting for the lease to
+expire.
 """
 
 from __future__ import annotations
@@ -36,7 +37,8 @@ class _MissingWriter:
     Attributes:
         endpoint: the writer.
         node: the node that the writer belongs to.
-        due: when the writer counts as lost, by the steady clock; None until all pending announcements have been read.
+        due: when the writer counts as lost, in seconds of the steady clock; None until all pending announcements have
+            been read.
     """
 
     endpoint: RemoteEndpoint
@@ -45,7 +47,9 @@ class _MissingWriter:
 
 
 class Departures:
-    """Judges how publishers left; everything except `watch` runs in the discovery thread.
+    """Decides whether publishers that disappeared were lost. All but `watch` is for one thread.
+
+    This thread is the discovery thread.
 
     Args:
         remote: the remote graph, which calls `endpoint_left` and `announced`.
@@ -62,7 +66,7 @@ class Departures:
         remote.departures = self
 
     def watch(self, lost: Callable[[EndpointInfo], None]) -> None:
-        """Register a callback for each lost publisher; it is called in the discovery thread."""
+        """Register a callback for lost publishers, which runs in the discovery thread."""
         self._watchers.append(lost)
 
     def endpoint_left(self, endpoint: RemoteEndpoint, node: NodeIdentity | None) -> None:
@@ -70,19 +74,19 @@ class Departures:
 
         Args:
             endpoint: the endpoint.
-            node: the node that still announces it; None if it was withdrawn.
+            node: the node that still announces the endpoint; None if the endpoint was withdrawn.
         """
         if self._watchers and endpoint.is_writer and node is not None and endpoint.participant not in self._reported:
             self._gone.append(_MissingWriter(endpoint, node))
 
     def announced(self, participant: bytes, endpoints: Collection[bytes]) -> None:
-        """Handle an announcement: endpoints that disappeared and are not in it were withdrawn."""
+        """Handle an announcement: missing endpoints that are not in the announcement were withdrawn."""
         self._gone = [
             gone for gone in self._gone if gone.endpoint.participant != participant or gone.endpoint.guid in endpoints
         ]
 
     def review(self) -> float | None:
-        """Report the publishers that count as lost by now.
+        """Report the publishers that have become lost since the last call.
 
         Returns:
             The seconds until the next call, or None if no call is needed.

@@ -52,16 +52,16 @@ class Discovery:
     """Fills the tables of the remote graph and publishes the graph of this process.
 
     A gid has 24 bytes for ROS 2 up to Humble and 16 from Iron on, and the wrong size harms the nodes that receive it.
-    Ours has the size used by the ROS 2 nodes that have been discovered. If both sizes occur, it has the older size,
-    because ``ros2 node list`` of the older distribution would fail otherwise. Processes of Linkwright understand both
-    sizes and are ignored here.
+    Our announcements use the size of the ROS 2 nodes that have been discovered. If both sizes occur, the older size
+    is used, because ``ros2 node list`` of the older distribution would fail otherwise. Processes of Linkwright
+    understand both sizes and do not affect the choice.
 
     Args:
         participant: our participant.
         thread: the thread in which everything of this class runs.
         remote: the tables.
         types: descriptions of types.
-        gid_size: the size of a gid until a ROS 2 node is discovered.
+        gid_size: the size of a gid, in bytes, until a ROS 2 node is discovered.
     """
 
     def __init__(
@@ -94,7 +94,7 @@ class Discovery:
             handler()
 
     def publish(self, nodes: Sequence[NodeEntities]) -> None:
-        """Announce our nodes and the endpoints of each."""
+        """Announce our nodes and the endpoints of each node."""
         self._nodes = nodes
         info = ParticipantEntities(self._participant.guid, nodes)
         write(self._writer[1], encode(info, self.gid_size))
@@ -137,16 +137,14 @@ class Discovery:
         self._remote.add_participant(RemoteParticipant(guid, facts.get("enclave", "/"), name, process, host))
 
     def _host_of(self, qos: int) -> str:
-        """Return the machine of a participant, as Fast DDS and Cyclone announce it; empty if it is not announced."""
+        """Return the machine that a Fast DDS or Cyclone participant announces; empty if none."""
         return next((host for host, _ in announced_processes(partial(self._dds.property, qos)) if host), "")
 
     def _process_of(self, qos: int) -> int | None:
-        """Return the process id that Fast DDS or Cyclone announces for a participant.
+        """Return the id of a participant's process on this machine; None if it is not known.
 
-        None unless it runs on this machine.
-
-        A process in a container may have the host name of this machine and an id that belongs to another process here,
-        or to none.
+        The announced id is accepted only if such a process runs here. A process in a container may have the host name
+        of this machine, and an id that belongs to another process here, or to none.
         """
         if not process_namespace():
             return None
@@ -183,7 +181,7 @@ class Discovery:
         return len(samples) == _AT_ONCE
 
     def ask_silent(self) -> float | None:
-        """Request the nodes of participants that have not announced them.
+        """Request announcements from participants that have not announced their nodes.
 
         Returns:
             The seconds until the next call, or None if no call is needed.
@@ -204,7 +202,7 @@ class Discovery:
     # --- announcing --------------------------------------------------------------------------------------------------
 
     def review_gid_size(self) -> None:
-        """Use the gid size that the other participants understand."""
+        """Update the gid size to what the other participants understand."""
         ours = {participant.guid for participant in self._remote.participants() if participant.is_ours}
         sizes = {size for owner, size in self._evidence.items() if owner not in ours}
         size = max(sizes, default=self.gid_size)
@@ -228,12 +226,12 @@ class Discovery:
 
 
 def announced_processes(property_of: Callable[[str], str]) -> Iterator[tuple[str, str]]:
-    """Yield the host and the id of a participant's process, as each vendor announces them.
+    """Yield the host and the process id of a participant, once for each vendor's properties.
 
     Fast DDS 3 identifies its machine by the machine id; the id of this machine is replaced by its host name.
 
     Args:
-        property_of: returns the value of a property of the participant; empty if it has no such property.
+        property_of: returns the value of a property of the participant; empty if there is no such property.
     """
     for host, process in _PROCESS_PROPERTIES:
         name = property_of(host).partition(":")[0]
@@ -242,7 +240,7 @@ def announced_processes(property_of: Callable[[str], str]) -> Iterator[tuple[str
 
 @lru_cache(maxsize=1)
 def machine_id() -> str:
-    """Return the machine's id from systemd; empty if there is none."""
+    """Return the machine's id as systemd stores it; empty if there is none."""
     try:
         return Path("/etc/machine-id").read_text(encoding="ascii").strip()
     except (OSError, UnicodeError):
@@ -259,12 +257,13 @@ INTERVALS = (0.02, 0.1, 0.2, 0.4, 0.8)
 
 
 class DiscoveryRequests:
-    """Listens with a second reader of ``ros_discovery_info`` until every participant has announced its nodes.
+    """Creates readers of ``ros_discovery_info`` until every participant has announced its nodes.
 
-    Otherwise some would announce them only after seconds. A writer of Fast DDS repeats its last announcement to a
-    reader when it discovers the reader. Often that happens before Cyclone knows the writer, so the announcement is
-    lost. Fast DDS ignores Cyclone's request to repeat it, and repeats it only after 3 s. A reader that is created once
-    the writer is known receives the announcement within milliseconds.
+    Without these extra readers, some announcements would arrive only after seconds. A writer of Fast DDS repeats its
+    last announcement to a reader when it discovers the reader. Often Cyclone does not know the writer at that
+    moment, and the announcement is lost. Fast DDS ignores Cyclone's request to repeat the announcement, and repeats
+    it only after 3 s. A reader that is created once the writer is known receives the announcement within
+    milliseconds.
 
     Args:
         listen: creates such a reader; returns a function that deletes it.
@@ -277,13 +276,13 @@ class DiscoveryRequests:
         self._due = 0.0
 
     def review(self, *, is_complete: bool) -> float | None:
-        """Send a request if one is due.
+        """Create the next reader if it is due, in place of the previous one.
 
         Args:
             is_complete: whether all participants have announced their nodes.
 
         Returns:
-            Seconds until the next check; None when all have announced their nodes, or have been asked often enough.
+            The seconds until the next check; None when all have announced their nodes, or after the last attempt.
         """
         now = time.monotonic()
         if is_complete:

@@ -1,4 +1,4 @@
-"""Encode and decode the message of ``ros_discovery_info``: the nodes of a participant, and the endpoints of each.
+"""Encoding of ``ros_discovery_info`` messages: a participant's nodes and their endpoints.
 
 The encoding is implemented here because the layout depends on the peer: a gid has 24 bytes up to Humble and 16 from
 Iron on (`rmw_dds_common/msg/Gid`), and one process may receive both.
@@ -38,7 +38,12 @@ class ParticipantEntities:
 
 
 def encode(info: ParticipantEntities, gid_size: int) -> bytes:
-    """Return a sample as CDR with its header."""
+    """Encode an announcement as CDR with its header.
+
+    Args:
+        info: the announcement.
+        gid_size: the size of each gid, in bytes.
+    """
     parts = bytearray(info.participant.ljust(gid_size, b"\0"))
     padding = bytes(gid_size - GID_SIZE)
     _count(parts, len(info.nodes))
@@ -54,10 +59,10 @@ def encode(info: ParticipantEntities, gid_size: int) -> bytes:
 
 
 def decode(data: bytes) -> ParticipantEntities | None:
-    """Decode a sample of either layout; return None if it has neither.
+    """Decode an announcement of either gid size; return None if it has neither.
 
-    The layout is the one that matches the length exactly. If both match, the sample has no gids, and both give the same
-    result.
+    The size is the one with which the length matches exactly. If both match, there are no gids, and both sizes give the
+    same result.
     """
     for gid_size in (OLD_GID_SIZE, GID_SIZE):
         try:
@@ -110,7 +115,7 @@ class _Reader:
         return self._bytes(self._count(limit=1))[:-1].decode()
 
     def _count(self, limit: int = 4) -> int:
-        """Read a length; raise an error if that many items cannot follow."""
+        """Read a length; raise an error if the remaining bytes are too few for that many items."""
         self._offset += -self._offset % 4
         (count,) = struct.unpack_from(self._order + "I", self._data, self._offset)
         self._offset += 4

@@ -1,4 +1,4 @@
-"""A DDS domain, as readers and writers use it."""
+"""A DDS domain, as used by readers and writers."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Domain:
         participant: our participant.
         remote: the remote graph.
         types: descriptions of types.
-        fragment_size: the bytes of a sample up to which it certainly fits into one packet.
+        fragment_size: the size in bytes up to which a sample always fits into one packet.
         pacer: sends large samples to Fast DDS.
     """
 

@@ -1,4 +1,4 @@
-"""Create, feed and delete the mirrors of this process's endpoints in a domain.
+"""Creates, serves and deletes the mirrors of this process's endpoints in a domain.
 
 Two threads do the work. One creates and deletes readers and writers in the order in which they were requested, and
 updates the tables of the remote graph. The other takes samples and passes them on.
@@ -49,7 +49,7 @@ class Engine(AnyEngine):
     Args:
         settings: the domain and how to join it.
         remote: the tables to fill.
-        departures: judges how remote publishers left.
+        departures: decides whether remote publishers that disappeared were lost.
         work: the queue of requests; other threads append to it and call `wake`.
         logger: logs problems.
 
@@ -101,11 +101,11 @@ class Engine(AnyEngine):
         self._reception.start()
 
     def wake(self) -> None:
-        """Have the queue of requests processed soon; may be called from any thread."""
+        """Wake the thread that processes the queue of requests. Callable from any thread."""
         self._control.wake()
 
     def close(self) -> None:
-        """Leave the domain once reliable samples are acknowledged, at the latest after a second.
+        """Leave the domain once reliable samples are acknowledged, after a second at the latest.
 
         The departure of our nodes is announced, unless the process ends because of an error (`departures`).
         """
@@ -131,7 +131,7 @@ class Engine(AnyEngine):
         for client in self._clients.values():
             client.abandon()
 
-    # --- work, in the thread that creates and deletes ----------------------------------------------------------------
+    # --- work in the thread that creates and deletes endpoints -------------------------------------------------------
 
     def add_node(self, node: NodeIdentity) -> None:
         """Announce a node."""
@@ -157,7 +157,7 @@ class Engine(AnyEngine):
         self._is_announced = False
 
     def close_publisher(self, publisher: Any) -> None:
-        """Delete a publisher's writer once all readers have acknowledged its samples, at the latest after a second."""
+        """Delete a publisher's writer once its samples are acknowledged, or after a second."""
         topic = self._outgoing.pop(publisher, None)
         if topic is not None:
             self._control.detach(topic.entity)
@@ -211,7 +211,7 @@ class Engine(AnyEngine):
                 self._control.detach(pair.pair.writer)
                 pair.close()
 
-    # --- between the work --------------------------------------------------------------------------------------------
+    # --- between requests --------------------------------------------------------------------------------------------
 
     def _idle(self) -> float | None:
         """Process requests, and handle the results of discovery.
@@ -246,14 +246,17 @@ class Engine(AnyEngine):
             self._remote.announce()
 
     def _meet_fast(self, mirrored: IncomingService | OutsideServer) -> None:
-        """Make a new service or client known to the participants of Fast DDS."""
+        """Make a new service or client known to the participants on Fast DDS, if they are served."""
         if self._fast is None:
             self._look_for_fast()
         else:
             mirrored.meet_fast(self._fast)
 
     def _look_for_fast(self) -> None:
-        """Look for participants of Fast DDS once one exists and this process has a service or a client."""
+        """Create the participant for Fast DDS if needed, and look for newly discovered participants.
+
+        It is needed once a participant on Fast DDS exists and this process has a service or a client.
+        """
         fast = self._remote.fast_participants()
         if self._fast is None and self._is_fast_possible and fast and (self._services or self._clients):
             self._is_fast_possible = False
@@ -270,7 +273,7 @@ class Engine(AnyEngine):
             self._fast.expect(fast)
 
     def _fast_address(self, reader: bytes) -> Address | None:
-        """Return the address of a reader of Fast DDS on this machine, if the participant for services knows it."""
+        """Return the address of a Fast DDS reader on this machine; None if it is not known."""
         return None if self._fast is None else self._fast.address_of(reader)
 
     def _on_match(self) -> None:
@@ -278,15 +281,15 @@ class Engine(AnyEngine):
         self._control.wake()
 
     def _on_waiting(self, topic: OutgoingTopic) -> None:
-        """Remember a topic whose messages wait for acknowledgements; called by any thread."""
+        """Record a topic whose messages wait for acknowledgements. Called by any thread."""
         if topic not in self._waiting:
             self._waiting[topic] = None
             self._control.wake()
 
     def _write_waiting(self) -> None:
-        """Write the samples that were waiting for acknowledgements and can now be written."""
+        """Write the samples that waited for acknowledgements and can now be written."""
         for topic in tuple(self._waiting):
-            del self._waiting[topic]  # removed first, so that acknowledgements that arrive from now on add it again
+            del self._waiting[topic]  # removed first: an acknowledgement that arrives now adds it again
             if topic.review():
                 self._waiting[topic] = None
 
@@ -295,7 +298,7 @@ class Engine(AnyEngine):
         self._control.wake()
 
     def _log_mismatches(self) -> None:
-        """Report incompatible QoS with the names of the nodes, which are known shortly after the mismatch."""
+        """Report incompatible QoS. The node names become known shortly after the mismatch."""
         for topic, due in tuple(self._mismatched.items()):
             is_due = time.monotonic() >= due
             topic.log_mismatches(finally_=is_due)
@@ -317,7 +320,7 @@ class Engine(AnyEngine):
                 topic.close()
 
     def _announce(self) -> None:
-        """Announce our nodes if they have changed; several changes in a row are announced together."""
+        """Announce our nodes if they have changed. Several changes in a row are announced together."""
         if not self._is_announced and (not self._work or time.monotonic() - self._announced_at > self._announce_span):
             self._discovery.publish(self._described_nodes())
             self._is_announced = True

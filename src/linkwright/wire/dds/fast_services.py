@@ -1,8 +1,8 @@
 """Services and clients as rmw_fastrtps implements them.
 
-There, a reply identifies its request in the inline QoS of RTPS, outside the sample. Cyclone neither writes inline QoS
-nor passes it on. Therefore a participant of our own does (`linkwright.wire.dds.rtps`), with a reader and a writer for
-each service and client in addition to those of Cyclone.
+In rmw_fastrtps, a reply identifies its request in the inline QoS of RTPS, outside the sample. Cyclone neither writes
+inline QoS nor passes it on. Therefore a participant of our own does this (`linkwright.wire.dds.rtps`), with a reader
+and a writer for each service and client in addition to those of Cyclone.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class EarlyRequest:
         writer: the GUID of the client's writer.
         body: CDR with its header.
         written: the time of writing by the client's clock, in ns.
-        came: the time of arrival, by the steady clock.
+        came: the time of arrival, in seconds of the steady clock.
     """
 
     writer: bytes
@@ -65,7 +65,7 @@ class FastServer:
 
     Such a client considers a service ready as soon as it knows one reader and one writer of it, which may be those of
     Cyclone. The client's request then reaches only Cyclone's reader, which does not provide the sequence number.
-    `on_early_request` accepts the request, and it gets its number when the client is discovered here.
+    `on_early_request` accepts the request. Its number is determined when the client is discovered here.
 
     Args:
         service: the service.
@@ -87,14 +87,14 @@ class FastServer:
         self._requests = participant.add_reader(dds_topic(Role.REQUEST, service.name), request, facts, self._on_data)
 
     def on_early_request(self, request: EarlyRequest) -> None:
-        """Accept a request from Cyclone's reader; it is dropped if it arrives here too."""
+        """Accept a request from Cyclone's reader. It is dropped if this reader receives it, too."""
         heard_at = self._participant.matched_writers(self._requests).get(request.writer)
         if heard_at is None or time.monotonic() < heard_at + _SETTLED:
             with self._lock:
                 self._early.append(request)
 
     def review(self) -> None:
-        """Write the replies whose client is known by now, and pass on early requests whose number is known."""
+        """Write replies whose clients are now known; pass on early requests whose numbers are known."""
         now = time.monotonic()
         with self._lock:
             late, self._late = self._late, deque()
@@ -106,11 +106,11 @@ class FastServer:
 
     @property
     def has_more_to_do(self) -> bool:
-        """Whether `review` should be called soon."""
+        """Whether `review` must be called again soon."""
         return bool(self._late or self._early)
 
     def close(self) -> None:
-        """Stop answering requests."""
+        """Stop answering requests, and delete the endpoints."""
         self._participant.remove(self._requests)
         self._participant.remove(self._replies)
 
@@ -119,7 +119,7 @@ class FastServer:
             self._first.setdefault(sample.writer, (sample.number, sample.time))
             numbered = self._numbered.get(sample.writer, ())
             if any(number == sample.number and abs(time_ - sample.time) < _SAME_TIME for number, time_ in numbered):
-                return  # already handled: it arrived here after it was taken from Cyclone's reader
+                return  # already handled: it was first taken from Cyclone's reader
         identity = read_related_identity(sample.inline, sample.order)
         client = sample.writer
         if identity is not None and is_reader(identity[0]) and identity[0].startswith(sample.source):
@@ -141,12 +141,18 @@ class FastServer:
             self._participant.changed()
 
     def _can_reach(self, client: bytes) -> bool:
-        """Return whether the client's reader is known; for an early request, only the client's participant is known."""
+        """Return whether the client's reader is known.
+
+        For an early request, only the client's participant is known.
+        """
         wanted = client if is_reader(client) else client[:PREFIX]
         return any(reader.startswith(wanted) for reader in self._participant.matched_readers(self._replies))
 
     def _number_early(self, now: float) -> None:
-        """Number early requests, in order, with the numbers before the first request that arrived here."""
+        """Pass on early requests, numbered in order before the first request that arrived here.
+
+        Requests that wait for too long without a number are dropped.
+        """
         heard = self._participant.matched_writers(self._requests)
         with self._lock:
             early, self._early = self._early, []
@@ -165,7 +171,7 @@ class FastServer:
                 self._ask(request.body, writer, writer, number)
 
     def _numbered_of(self, writer: bytes, early: list[EarlyRequest]) -> list[tuple[int, EarlyRequest]]:
-        """Return a writer's early requests that do not arrive here too, each with its number."""
+        """Return a writer's early requests that do not arrive here, too, each with its number."""
         last = self._participant.last_of(self._requests, writer)
         with self._lock:
             if writer in self._first:
@@ -184,7 +190,7 @@ class FastClient:
     Args:
         client: the client.
         participant: our participant for Fast DDS.
-        is_dead: returns whether a participant, given by the prefix of its GUIDs, is known to have been killed.
+        is_dead: returns whether a participant, given by its GUID prefix, is known to have been killed.
     """
 
     def __init__(
@@ -198,7 +204,7 @@ class FastClient:
         self._answers: dict[int, Callable[[Any], None]] = {}
         self._identities: tuple[bytes, ...] = ()
         self._lock = Lock()
-        # From here on replies may arrive, including replies to other clients of the service.
+        # From now on replies may arrive, including replies to other clients of the service.
         self._replies = participant.add_reader(dds_topic(Role.REPLY, client.name), response, facts, self._on_data)
         self._requests = participant.add_writer(dds_topic(Role.REQUEST, client.name), request, facts)
         self._identities = (self._replies.reader.guid, self._requests.writer.guid)
@@ -212,7 +218,7 @@ class FastClient:
         return partial(self._forget, number)
 
     def is_ready(self) -> bool:
-        """Return whether a server knows both endpoints of this client; before that, its reply would be lost."""
+        """Return whether a server knows both endpoints of this client; otherwise its reply is lost."""
         listening = {guid[:PREFIX] for guid in self._participant.matched_readers(self._requests)}
         return any(
             heard_at is not None and guid[:PREFIX] in listening and not self._is_dead(guid[:PREFIX])
@@ -220,7 +226,7 @@ class FastClient:
         )
 
     def close(self) -> None:
-        """Delete the endpoints; pending requests stay unanswered."""
+        """Delete the endpoints. Pending requests stay unanswered."""
         self._answers.clear()
         self._participant.remove(self._requests)
         self._participant.remove(self._replies)

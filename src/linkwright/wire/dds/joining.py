@@ -1,4 +1,7 @@
-"""Join a graph to a DDS domain if DDS is installed; this is checked without the import, which takes 0.15 s."""
+"""Joins a graph to a DDS domain if DDS is installed.
+
+Whether DDS is installed is checked without importing it, because the import takes 0.15 s.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def unavailable_reason(environment: Mapping[str, str] | None = None) -> Phrase:
-    """Return the reason why this process does not use DDS; empty if it does.
+    """Return the reason why this process does not use DDS; empty if it uses DDS.
 
     Args:
         environment: the environment variables; those of this process if omitted.
@@ -40,10 +43,13 @@ def unavailable_reason(environment: Mapping[str, str] | None = None) -> Phrase:
 
 
 def available(environment: Mapping[str, str] | None = None) -> bool:
-    """Return whether DDS can be used."""
+    """Return whether this process can use DDS."""
     return not unavailable_reason(environment)
 
 
 def join(graph: Graph, **options: Unpack[JoinOptions]) -> DdsTransport | None:
-    """Connect a graph to other processes over DDS; return None if that is not possible."""
+    """Connect a graph to other processes over DDS.
+
+    Returns the transport; None if DDS is not available, or its settings are wrong.
+    """
     return join_with(graph, "dds", read_settings, DdsTransport, unavailable_reason, options)

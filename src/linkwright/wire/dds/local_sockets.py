@@ -1,8 +1,7 @@
-"""Count the processes of this machine that take part in a domain, by the ports that the system reports.
+"""Counts the processes of this machine in a domain, by the ports that the system reports.
 
 Every DDS implementation listens on the ports that RTPS assigns to a domain (DDSI-RTPS 2.3, 9.6.1.1): one shared port
-for multicast, one separate port for unicast, or both. A process that has not answered yet can therefore be counted
-here.
+for multicast, one separate port for unicast, or both. This way a process is counted even before it has answered.
 """
 
 from __future__ import annotations
@@ -17,22 +16,22 @@ _TABLES = ("udp", "udp6")
 
 
 def multicast_port(domain_id: int) -> int:
-    """Return the port for announcements to all participants of a domain (SPDP_WELL_KNOWN_MULTICAST_PORT)."""
+    """Return the port for a domain's announcements (SPDP_WELL_KNOWN_MULTICAST_PORT)."""
     return _PORT_BASE + _DOMAIN_GAIN * domain_id
 
 
 def other_processes(domain_id: int, tables: Path = Path("/proc/self/net")) -> int | None:
     """Return a lower bound of the number of other processes that take part in a domain.
 
-    No process listens twice on a port of the domain. The number is therefore the number of sockets on its multicast
-    port or on its unicast ports for announcements (every second port), whichever is greater.
+    No process listens twice on a port of the domain. The number is therefore the number of sockets on the domain's
+    multicast port or on its unicast ports for announcements (every second port), whichever is greater.
 
     Args:
         domain_id: the DDS domain.
         tables: the folder with the system's tables of sockets (proc(5)).
 
     Returns:
-        The number, which may be 0; None if the system does not report it.
+        The number, which may be 0; None if the system does not report sockets.
     """
     first = multicast_port(domain_id)
     listening: Counter[int] = Counter()
@@ -51,14 +50,16 @@ def other_processes(domain_id: int, tables: Path = Path("/proc/self/net")) -> in
 
 
 def waiting_bytes(port: int, tables: Path = Path("/proc/self/net")) -> int | None:
-    """Return the number of bytes waiting at a UDP port of this machine, including the system's overhead per packet.
+    """Return the number of bytes waiting at a UDP port of this machine.
+
+    The number includes the system's overhead per packet.
 
     Args:
-        port: the port; if several sockets listen on it, the fullest one counts.
+        port: the port; if several sockets listen on it, the socket with the most bytes counts.
         tables: the folder with the system's tables of sockets (proc(5)).
 
     Returns:
-        The number of bytes, 0 if no socket listens; None if the system does not report it.
+        The number of bytes, 0 if no socket listens; None if the system does not report sockets.
     """
     pattern = b":%04X" % port
     most = 0
@@ -80,7 +81,7 @@ def _own_sockets() -> set[str]:
     for entry in folder.iterdir():
         try:
             target = str(entry.readlink())
-        except OSError:  # closed in the meantime
+        except OSError:  # the file was closed in the meantime
             continue
         if target.startswith("socket:["):
             found.add(target[len("socket:[") : -1])

@@ -1,4 +1,4 @@
-"""Map names and types of ROS 2 to DDS (design article "Topic and service name mapping", rmw)."""
+"""Maps ROS 2 names and types to DDS (design article "Topic and service name mapping", rmw)."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _ROLES = {role.value: role for role in Role}
 
 @dataclass(frozen=True, slots=True)
 class RosName:
-    """A ROS name found in a DDS topic.
+    """The ROS name to which a DDS topic belongs.
 
     Attributes:
         role: the role of the topic.
@@ -48,7 +48,7 @@ def dds_topic(role: Role, name: str, *, plain: bool = False) -> str:
 
 
 def ros_name(topic: str) -> RosName | None:
-    """Return the ROS name of a DDS topic; None if it does not belong to ROS."""
+    """Return the ROS name of a DDS topic; None if the topic does not belong to ROS."""
     prefix, slash, rest = topic.partition("/")
     role = _ROLES.get(prefix)
     if role is None or not slash:
@@ -60,7 +60,7 @@ def ros_name(topic: str) -> RosName | None:
 
 
 def ros_service_type(type_name: str) -> str | None:
-    """Return the service type that a request or reply type belongs to; None for any other type."""
+    """Return the service type of a request or reply type; None for any other type."""
     name = ros_type(type_name)
     if name is None:
         return None
@@ -71,7 +71,7 @@ def ros_service_type(type_name: str) -> str | None:
 
 
 def parse_user_data(data: bytes) -> dict[str, str]:
-    """Parse USER_DATA, which is written ``key=value;key=value;`` (rmw ``parse_key_value``)."""
+    """Parse USER_DATA of the form ``key=value;key=value;`` (rmw ``parse_key_value``)."""
     facts = {}
     for item in data.decode("utf-8", errors="replace").split(";"):
         key, equals, value = item.partition("=")
@@ -81,6 +81,6 @@ def parse_user_data(data: bytes) -> dict[str, str]:
 
 
 def endpoint_id(guid: bytes) -> str:
-    """Format the id that links the reader and the writer of a client or service, as rmw_cyclonedds_cpp does."""
+    """Format the id that links a client's or service's reader and writer, as rmw_cyclonedds_cpp."""
     first, *rest = guid
     return f"{first:2x}" + "".join(f".{byte:x}" for byte in rest)

@@ -1,4 +1,4 @@
-"""The DDS domains that this process has open; each is opened once, for any number of graphs."""
+"""The DDS domains that this process has open, each of which any number of graphs share."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ class OpenDomain:
     Attributes:
         number: the domain id.
         handle: Cyclone's handle.
-        users: the number of participants in it.
+        users: the number of participants in the domain.
         descriptions: the descriptions of types.
-        types: the types of topics, as Cyclone has them.
-        members: keeps announcements inside the machine; None if they may leave it.
+        types: Cyclone's types of the topics.
+        members: the socket that keeps announcements inside the machine; None if they may leave it.
     """
 
     def __init__(self, number: int, handle: int, members: socket | None = None) -> None:
@@ -41,10 +41,10 @@ _lock = Lock()
 
 
 def open_domain(settings: Settings) -> OpenDomain:
-    """Return a domain for one more participant, and open it with the settings if it is not open.
+    """Return a domain for one more participant; if it is not open, open it with the settings.
 
     Raises:
-        LinkwrightError: DDS102 or DDS103, Cyclone cannot open it.
+        LinkwrightError: DDS102 or DDS103, Cyclone cannot open the domain.
     """
     with _lock:
         domain = _opened.get(settings.domain_id)
@@ -55,7 +55,7 @@ def open_domain(settings: Settings) -> OpenDomain:
 
 
 def close_domain(domain: OpenDomain) -> None:
-    """Remove a participant from a domain; the last one closes the domain with its sockets and threads."""
+    """Remove a participant from a domain. The last one closes the domain's sockets and threads."""
     with _lock:
         domain.users -= 1
         if not domain.users:
@@ -67,7 +67,9 @@ def close_domain(domain: OpenDomain) -> None:
 
 
 def _create_domain(settings: Settings) -> OpenDomain:
-    """Open a domain with the first configuration that Cyclone accepts; Cyclone prints what it rejects.
+    """Open a domain with the first configuration that Cyclone accepts.
+
+    Cyclone prints the reasons for rejecting the others.
 
     Raises:
         LinkwrightError: DDS102 or DDS103, Cyclone accepts none of the configurations.
@@ -81,8 +83,7 @@ def _create_domain(settings: Settings) -> OpenDomain:
     code = _first_taken(settings.domain_id, configurations)
     if code >= 0:
         if not settings.user_configuration:
-            # Only errors are logged: each malformed or foreign packet causes a warning, so any process could flood the
-            # log.
+            # Log errors only. Each malformed or foreign packet causes a warning, so any process could flood the log.
             load().dds_set_log_mask(LOG_ERRORS)
         return OpenDomain(settings.domain_id, code, members)
     if members is not None:

@@ -1,10 +1,10 @@
-"""Send large samples to Fast DDS readers on this machine packet by packet, as fast as the readers receive them.
+"""Sends large samples to Fast DDS readers on this machine as fast as these can receive them.
 
 Cyclone sends all packets of a sample at once. A reader of Fast DDS receives into a buffer of 208 kB, so most packets of
-an image are lost. A reliable reader requests them again, which takes milliseconds for every three packets, and a
-best-effort reader drops the image. Therefore the packets are sent from here first, with the GUID and the sequence
-number of Cyclone's writer. Then Cyclone writes the sample, and its packets are duplicates for a reader that already has
-them. Discovery, acknowledgements and retransmission stay with Cyclone
+an image are lost. A reliable reader requests the lost packets again, which takes milliseconds for every three packets,
+and a best-effort reader drops the image. Therefore the packets are sent from here first, one by one, with the GUID and
+the sequence number of Cyclone's writer. Then Cyclone writes the sample, and its packets are duplicates for a reader
+that already has them. Cyclone still handles discovery, acknowledgements and retransmission
 (`docs/decisions/0104-large-messages-packet-by-packet.md`).
 """
 
@@ -48,7 +48,7 @@ class Receiver:
     Args:
         address: the address of the socket.
         waiting: returns the number of bytes waiting at a port; None if the system does not report it.
-        pause: waits for some seconds.
+        pause: sleeps for the given number of seconds.
     """
 
     def __init__(
@@ -64,13 +64,16 @@ class Receiver:
         self._is_stuck = False
 
     def begin(self) -> None:
-        """Start a new sample. If the reader received nothing of the previous sample, do not wait for it again."""
+        """Start a new sample.
+
+        If the reader received nothing of the previous sample, `wait_for_room` does not wait for this one.
+        """
         self._room, self._looks = 0, 1 if self._is_stuck else _LOOKS
 
     def wait_for_room(self) -> bool:
         """Wait until a packet fits into the buffer.
 
-        Return whether it fits before the checks for this sample are used up.
+        Returns False if no packet fits before the number of checks for this sample is exhausted.
         """
         if not self._room:
             self._room = self._next_room()
@@ -94,10 +97,12 @@ class Receiver:
 
 
 class Pacer:
-    """Sends the large samples of all writers of a participant, in a thread that starts with the first one.
+    """Sends the large samples of all writers of a participant, in a thread.
+
+    The thread starts with the first sample.
 
     Args:
-        address_of: returns the address of a reader on this machine from its GUID; None if it is not known.
+        address_of: returns the address of a reader on this machine from the reader's GUID; None if it is not known.
     """
 
     def __init__(self, address_of: Callable[[bytes], Address | None]) -> None:
@@ -114,7 +119,7 @@ class Pacer:
         return {prefix: address for prefix, address in found.items() if address is not None}
 
     def add(self, writer: PacedWriter) -> None:
-        """Have a writer's samples sent soon; may be called from any thread."""
+        """Queue a writer, whose samples are then sent. Callable from any thread."""
         with self._lock:
             if self._thread is None:
                 self._thread = threading.Thread(target=self._run, name="linkwright-dds-pace", daemon=True)
@@ -122,7 +127,7 @@ class Pacer:
         self._work.put(writer)
 
     def stop(self, timeout: float) -> None:
-        """End the thread, waiting at most the given number of seconds."""
+        """End the thread; wait for it for at most `timeout` seconds."""
         self._work.put(None)
         if self._thread is not None:
             self._thread.join(timeout)
@@ -134,10 +139,10 @@ class Pacer:
 
         Args:
             writer: the writer's GUID.
-            number: the sequence number that the writer gives to the sample.
+            number: the sequence number that the writer assigns to the sample.
             sample: the serialized sample, whose length is a multiple of four bytes.
-            written: when it was published, in ns since the epoch.
-            places: the participants with readers; see `addresses_of`.
+            written: when the sample was published, in ns since the epoch.
+            places: the addresses of the participants with readers; see `addresses_of`.
         """
         if self._socket is None:
             self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -151,7 +156,7 @@ class Pacer:
             for prefix, receiver in tuple(readers.items()):
                 if receiver.wait_for_room():
                     head = message(writer[:PREFIX], stamp, start, to=prefix)
-                    with suppress(OSError):  # Cyclone sends the packets that the system does not accept here
+                    with suppress(OSError):  # Cyclone sends the packets that the system refuses here
                         self._socket.sendto(head + part, receiver.address)
                 else:
                     del readers[prefix]
@@ -164,19 +169,19 @@ class Pacer:
 
     def _run(self) -> None:
         while (writer := self._work.get()) is not None:
-            if guarded(writer.send_next) is not False:  # after an error, the next sample is sent
+            if guarded(writer.send_next) is not False:  # after an error, continue with the next sample
                 self._work.put(writer)
 
 
 class PacedWriter:
-    """Writes the samples of one writer in order, and sends large ones through the pacer if Fast DDS readers exist.
+    """Writes the samples of one writer in order, and sends large ones to Fast DDS readers first.
 
     Args:
         guid: the writer's GUID.
-        depth: the maximum number of waiting samples; newer samples replace the oldest.
-        write: writes a sample as published at a time, in ns since the epoch (None for now); returns whether that
-            worked. The writer numbers the samples that were written from 1.
-        readers: returns the GUIDs of the readers of Fast DDS that the writer is matched with.
+        depth: the maximum number of queued samples; newer samples replace the oldest.
+        write: writes a sample with its time of publication, in ns since the epoch (None for now); returns whether that
+            succeeded. The writer numbers the written samples from 1.
+        readers: returns the GUIDs of the readers of Fast DDS that match the writer.
         pacer: sends the large samples.
     """
 
@@ -199,7 +204,7 @@ class PacedWriter:
         self._changed = threading.Condition(threading.RLock())  # reentrant, as in `Backlog`
 
     def write(self, sample: bytes) -> None:
-        """Write a sample immediately, or after waiting large samples; may be called from any thread."""
+        """Write a sample immediately, or queue it behind large samples. Callable from any thread."""
         with self._changed:
             if not self._is_pacing and not self._places(sample):
                 self._write_now(sample)
@@ -211,7 +216,7 @@ class PacedWriter:
         self._pacer.add(self)
 
     def send_next(self) -> bool:
-        """Send the next waiting sample, in the pacer's thread; return whether there are more."""
+        """Send the next queued sample; return whether more are queued. Called in the pacer's thread."""
         with self._changed:
             if self._waiting:
                 sample, published = self._waiting.popleft()
@@ -223,21 +228,21 @@ class PacedWriter:
         if places:
             self._pacer.send(self._guid, self._written + 1, sample, published, places)
         if not self._write_now(sample, published) and places:
-            self._is_numbered = False  # readers have received this number with a sample other than the next one
+            self._is_numbered = False  # readers have received this number with another sample
         return True
 
     def wait_until_written(self, seconds: float) -> bool:
-        """Wait until no sample is waiting to be sent; return whether that happened within some seconds."""
+        """Wait until no sample is queued; return False if that takes longer than `seconds`."""
         with self._changed:
             return self._changed.wait_for(lambda: not self._is_pacing, min(seconds, threading.TIMEOUT_MAX))
 
     def close(self) -> None:
-        """Drop waiting samples."""
+        """Drop the queued samples."""
         with self._changed:
             self._waiting.clear()
 
     def _places(self, sample: bytes) -> dict[bytes, Address]:
-        """Return the addresses of the readers that a sample is paced for; empty if it fits in one packet."""
+        """Return the addresses to which a sample is paced; empty if the sample fits into one packet."""
         return self._pacer.addresses_of(self._readers()) if len(sample) > FRAGMENT and self._is_numbered else {}
 
     def _write_now(self, sample: bytes, published: int | None = None) -> bool:

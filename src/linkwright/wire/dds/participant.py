@@ -20,16 +20,19 @@ SERVICES_NAME = "linkwright-services"
 
 
 def entity_name() -> str:
-    """Return the name of a participant of this process: its kind, process id and process namespace.
+    """Return the name of a participant of this process: kind, process id and process namespace.
 
-    From the name, other processes of Linkwright on the same machine learn that the process has ended before its lease
+    Other Linkwright processes on the same machine use the name to notice that the process has ended before its lease
     expires.
     """
     return f"{NAME}/{process_namespace()}/{os.getpid()}"
 
 
 def process_namespace() -> str:
-    """Return an identifier that distinguishes processes with the same id in different containers; empty if unknown."""
+    """Return an identifier of this process's PID namespace; empty if it is not known.
+
+    It distinguishes processes that have the same id in different containers.
+    """
     try:
         return Path("/proc/self/ns/pid").readlink().name.strip("pid:[]")
     except OSError:
@@ -43,7 +46,7 @@ class Participant:
         settings: the domain and the configuration.
 
     Raises:
-        LinkwrightError: DDS102 to DDS104, it could not be created.
+        LinkwrightError: DDS102 to DDS104, the participant could not be created.
     """
 
     def __init__(self, settings: Settings) -> None:
@@ -65,14 +68,14 @@ class Participant:
         return self._domain.descriptions
 
     def create_topic(self, name: str, described_type: object) -> int:
-        """Create a topic of a type; only the name of the type is announced.
+        """Create a topic of a type, of which only the name is announced.
 
         Args:
-            name: its DDS name.
+            name: the topic's DDS name.
             described_type: the class that describes the type (`WireTypes`).
 
         Raises:
-            CycloneError: Cyclone refuses it.
+            CycloneError: Cyclone refuses the topic.
         """
         return self._domain.types.create_topic(self.entity, name, described_type)
 
@@ -85,14 +88,14 @@ class Participant:
         return check_call(self._dds.dds_create_writer(self.entity, topic, qos, None), "making a writer")
 
     def delete(self, *entities: int) -> None:
-        """Delete entities; readers and writers must be given before their topics."""
+        """Delete entities. Readers and writers must precede their topics."""
         for entity in entities:
             self._dds.dds_delete(entity)
 
     def close(self) -> None:
         """Leave the domain and delete all entities.
 
-        The last participant also deletes the domain's sockets and threads.
+        The last participant in the domain also deletes the domain's sockets and threads.
         """
         self.closed = True
         self._dds.dds_delete(self.entity)

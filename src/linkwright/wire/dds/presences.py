@@ -1,6 +1,6 @@
 """Endpoints that are announced in a domain but neither send nor receive.
 
-The samples of their readers are never taken.
+The samples that arrive at their readers are never taken.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ def open_presence(presence: Presence, domain: Domain) -> QuietReader | QuietClie
 
 
 class QuietReader(MirroredTopic):
-    """A reader that keeps the last sample but never takes it.
+    """A reader that stores the last sample but never takes it.
 
-    Writers send it only samples that other readers in this process receive too.
+    Writers send it only samples that other readers in this process receive, too.
     """
 
     _STATUS = 0
@@ -78,4 +78,4 @@ class QuietClient:
 
 
 def _ignore(_: Any) -> None:
-    """Ignore a mismatch: the other side notifies its own users of the incompatible quality of service."""
+    """Ignore a mismatch: the other side reports the incompatible QoS to its own users."""

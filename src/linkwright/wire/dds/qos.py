@@ -1,4 +1,4 @@
-"""Quality of service in DDS: ROS profiles as DDS policies and back (as rmw_cyclonedds_cpp maps them)."""
+"""Conversion of ROS QoS profiles to DDS policies and back, as in rmw_cyclonedds_cpp."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ _XCDR1 = 0
 
 @contextmanager
 def endpoint_qos(profile: QoSProfile, user_data: bytes = b"") -> Iterator[int]:
-    """Yield the policies of a reader or writer, which are valid inside the block.
+    """Yield the policies of a reader or writer. They are valid only inside the ``with`` block.
 
-    Samples of this participant are not returned to it, because the bus of the process has already delivered them.
+    Samples of this participant are not received by it, because the bus of the process has already delivered them.
 
     Args:
-        profile: the QoS that is offered or requested; Cyclone chooses open values as for ROS.
+        profile: the offered or requested QoS; policies left to the middleware have Cyclone's defaults for ROS.
         user_data: key-value data for rmw.
     """
     dds = load()
@@ -75,7 +75,7 @@ def endpoint_qos(profile: QoSProfile, user_data: bytes = b"") -> Iterator[int]:
 
 @contextmanager
 def participant_qos(user_data: bytes, entity_name: str) -> Iterator[int]:
-    """Yield the policies of a participant, which are valid inside the block."""
+    """Yield the policies of a participant. They are valid only inside the ``with`` block."""
     dds = load()
     qos: int = dds.dds_create_qos()
     try:
@@ -91,8 +91,7 @@ def profile_of(qos: int, *, announces_history: bool = True) -> QoSProfile:
 
     Args:
         qos: the policies.
-        announces_history: whether the endpoint announces its history; if it does not, Cyclone only has a default for
-            it.
+        announces_history: whether the endpoint announces its history; if not, Cyclone reports only a default.
     """
     dds = load()
     kind, depth, duration = c.c_int(), c.c_int32(), c.c_int64()

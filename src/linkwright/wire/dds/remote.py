@@ -43,12 +43,13 @@ class RemoteParticipant:
     """A participant in the domain: another process, or a part of one.
 
     Attributes:
-        guid: 16 bytes.
-        enclave: the security enclave from its USER_DATA.
-        entity_name: its own name.
-        peer_process: for a participant that is not ours, the id of its process if it runs on this machine.
-        host: the machine that it runs on; empty if it is not announced.
-        entities: its announcement in ``ros_discovery_info``; None until it arrives.
+        guid: the participant's GUID, 16 bytes.
+        enclave: the security enclave from the USER_DATA.
+        entity_name: the name that the participant announces for itself.
+        peer_process: for a participant that does not belong to Linkwright, the id of its process if it runs on this
+            machine.
+        host: the machine that the participant runs on; empty if it is not announced.
+        entities: the participant's announcement in ``ros_discovery_info``; None until it arrives.
     """
 
     guid: bytes
@@ -61,17 +62,17 @@ class RemoteParticipant:
     """When it was first heard of, by the steady clock."""
 
     def endpoints(self) -> set[bytes]:
-        """Return the GUIDs of the endpoints that it announces for its nodes."""
+        """Return the GUIDs of the endpoints that the participant announces for its nodes."""
         return {gid for node in (self.entities.nodes if self.entities else ()) for gid in _gids(node)}
 
     @property
     def is_ours(self) -> bool:
-        """Whether it belongs to Linkwright, and so does not indicate the distribution of ROS 2."""
+        """Whether the participant belongs to Linkwright, so that it indicates no ROS 2 distribution."""
         return self.entity_name.startswith(NAME + "/")
 
     @property
     def process(self) -> int | None:
-        """The id of its process; None unless it is known to run on this machine."""
+        """The id of the participant's process; None unless it is known to run on this machine."""
         if not self.is_ours:
             return self.peer_process
         _, _, rest = self.entity_name.partition("/")
@@ -81,7 +82,10 @@ class RemoteParticipant:
         return int(process)
 
     def has_died(self) -> bool:
-        """Return whether its process has ended before its lease expired; known only on this machine."""
+        """Return whether the participant's process has ended before the lease expired.
+
+        This is known only for processes on this machine.
+        """
         return self.process is not None and not is_process_running(self.process)
 
 
@@ -90,14 +94,14 @@ class RemoteEndpoint:
     """A reader or a writer of another participant.
 
     Attributes:
-        guid: 16 bytes.
-        handle: Cyclone's handle of it in this process.
-        participant: the GUID of its participant.
-        is_writer: whether it is a writer.
-        topic: its DDS topic.
-        type_name: its DDS type.
-        qos: its policies.
-        facts: the entries of its USER_DATA.
+        guid: the endpoint's GUID, 16 bytes.
+        handle: Cyclone's handle of the endpoint in this process.
+        participant: the GUID of the endpoint's participant.
+        is_writer: whether the endpoint is a writer.
+        topic: the DDS topic.
+        type_name: the DDS type.
+        qos: the policies.
+        facts: the entries of the USER_DATA.
     """
 
     guid: bytes
@@ -111,22 +115,22 @@ class RemoteEndpoint:
 
     @property
     def name(self) -> RosName | None:
-        """The ROS name of its topic."""
+        """The ROS name of the DDS topic; None if the topic does not belong to ROS."""
         return ros_name(self.topic)
 
     @property
     def is_fast(self) -> bool:
-        """Whether it belongs to a participant of Fast DDS (RTPS vendor 1.15)."""
+        """Whether the endpoint belongs to a participant of Fast DDS (RTPS vendor 1.15)."""
         return is_fast(self.guid)
 
     def endpoint_info(self, node: NodeIdentity | None, host: str = "") -> EndpointInfo | None:
-        """Return its description in ROS terms.
+        """Return the description of the endpoint in ROS terms.
 
-        None for an endpoint outside ROS or the second half of a service or client.
+        Returns None for an endpoint outside ROS, and for the second half of a service or client.
 
         Args:
-            node: the node that it belongs to, if known.
-            host: the machine that it is on.
+            node: the node that the endpoint belongs to, if known.
+            host: the machine that the endpoint is on.
         """
         name = self.name
         if name is None:
@@ -141,30 +145,31 @@ class RemoteEndpoint:
             return None
         if type_name is None:
             return None
-        # rmw_fastrtps announces the hash of the request or the response; other implementations announce the service's
-        # hash.
+        # rmw_fastrtps announces the hash of the request or response type. Other implementations announce the hash of
+        # the
+        # service type.
         announces_hash = name.role is Role.TOPIC or not self.is_fast
         type_hash = self.facts.get("typehash", "") if announces_hash else ""
         return EndpointInfo(kind, node, name.name, type_name, self.qos, self.guid, type_hash, host=host)
 
 
 class DepartureWatch(Protocol):
-    """Receives notice of endpoints that disappear; see `linkwright.wire.dds.departures.Departures`."""
+    """Receives notifications of endpoints that disappear; see `wire.dds.departures.Departures`."""
 
     def endpoint_left(self, endpoint: RemoteEndpoint, node: NodeIdentity | None) -> None:
         """Handle the disappearance of an endpoint.
 
         Args:
             endpoint: the endpoint.
-            node: the node that still announces it; None if it was withdrawn.
+            node: the node that still announces the endpoint; None if the endpoint was withdrawn.
         """
 
     def announced(self, participant: bytes, endpoints: Collection[bytes]) -> None:
-        """Handle an announcement of the endpoints that a participant's nodes have now."""
+        """Handle an announcement of the current endpoints of a participant's nodes."""
 
 
 class RemoteGraph(Outside):
-    """The nodes and endpoints of other processes; see `Outside` for the threads that write and read them."""
+    """The nodes and endpoints of other processes; for thread safety see `Outside`."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -177,7 +182,7 @@ class RemoteGraph(Outside):
         self.departures: DepartureWatch | None = None
         """Is notified of endpoints that are gone."""
 
-    # --- from discovery -----------------------------------------------------------------------------------------
+    # --- called by discovery ------------------------------------------------------------------------------------
 
     def add_participant(self, participant: RemoteParticipant) -> None:
         """Record a participant."""
@@ -212,7 +217,10 @@ class RemoteGraph(Outside):
                 self._forget(endpoint)
 
     def entities_announced(self, entities: ParticipantEntities) -> None:
-        """Record the nodes that a participant announces; this may happen before the participant is known."""
+        """Record the nodes that a participant announces.
+
+        The announcement may arrive before the participant is known.
+        """
         with self._lock:
             participant = self._participants.get(entities.participant)
             if participant is None:
@@ -231,7 +239,7 @@ class RemoteGraph(Outside):
     # --- queries of the transport -------------------------------------------------------------------------------
 
     def endpoint(self, handle: int) -> RemoteEndpoint | None:
-        """Return the reader or writer with a handle."""
+        """Return the reader or writer with a handle; None if it is not known."""
         return self._by_handle.get(handle)
 
     def endpoints_of(self, topic: str, *, writers: bool) -> list[RemoteEndpoint]:
@@ -249,13 +257,16 @@ class RemoteGraph(Outside):
             return list(self._participants.values())
 
     def fast_participants(self) -> set[bytes]:
-        """Return the GUID prefixes of the Fast DDS participants that are not known to have been killed."""
+        """Return the GUID prefixes of the Fast DDS participants, except those known to be killed."""
         dead = self._dead_participants()
         with self._lock:
             return {guid[:_PREFIX] for guid in self._participants if is_fast(guid) and guid not in dead}
 
     def is_read_by_fast(self, topic: str) -> bool:
-        """Return whether a Fast DDS participant that is not known to have been killed reads a DDS topic."""
+        """Return whether a Fast DDS participant reads a DDS topic.
+
+        Participants that are known to have been killed do not count.
+        """
         dead = self._dead_participants()
         readers = self.endpoints_of(topic, writers=False)
         return any(reader.is_fast and reader.participant not in dead for reader in readers)
@@ -265,7 +276,10 @@ class RemoteGraph(Outside):
         return any(guid.startswith(prefix) for guid in self._dead_participants())
 
     def all_announced(self) -> bool:
-        """Return whether each participant with a writer of ``ros_discovery_info`` has announced its nodes."""
+        """Return whether every participant that can announce its nodes has announced them.
+
+        Such a participant has a writer of ``ros_discovery_info``.
+        """
         with self._lock:
             speakers = {
                 endpoint.participant
@@ -279,10 +293,11 @@ class RemoteGraph(Outside):
             )
 
     def is_complete(self) -> bool:
-        """Return whether all participants have announced their nodes, and the endpoints of those nodes are known.
+        """Return whether discovery is complete.
 
-        A participant that listens to announcements belongs to ROS and will announce its own nodes. A participant
-        without known endpoints is given a moment.
+        Discovery is complete when all participants have announced their nodes, and the endpoints of those nodes are
+        known. A participant that listens to announcements belongs to ROS and will announce its own nodes. For a
+        participant without known endpoints, discovery waits for a moment.
         """
         now = time.monotonic()
         with self._lock:
@@ -294,7 +309,7 @@ class RemoteGraph(Outside):
                 age = now - participant.came_at
                 if guid not in known and age < _ENDPOINTS_WITHIN:
                     return False
-                # Fast DDS may announce readers a second before writers.
+                # Fast DDS may announce readers up to a second before writers.
                 if age < _ALL_WITHIN and guid in listeners and participant.entities is None:
                     return False
                 if age < _ALL_WITHIN and not self._endpoints.keys() >= participant.endpoints():
@@ -309,7 +324,10 @@ class RemoteGraph(Outside):
         return {our.process for our in ours if our.process is not None}
 
     def nodes(self) -> list[NodeIdentity]:
-        """Return the nodes of other processes, one entry for each, in the order of their participants."""
+        """Return the nodes of other processes, in the order of their participants.
+
+        If several nodes have the same name, each is included.
+        """
         dead = self._dead_participants()
         with self._lock:
             return [
@@ -336,7 +354,7 @@ class RemoteGraph(Outside):
         return participant.host if participant else ""
 
     def node_name(self, endpoint: RemoteEndpoint) -> str:
-        """Return the full name of the node that an endpoint belongs to; empty until it is announced."""
+        """Return the full name of the node that owns an endpoint; empty until it is announced."""
         with self._lock:
             owner = self._owner_of(endpoint)
         return owner.full_name if owner else ""
@@ -351,7 +369,7 @@ class RemoteGraph(Outside):
         return None
 
     def writers_of(self, participant: bytes) -> list[tuple[RemoteEndpoint, NodeIdentity | None]]:
-        """Return the writers of a participant, each with its node or, until that is announced, None."""
+        """Return a participant's writers, each with its node, or None until the node is announced."""
         with self._lock:
             writers = [
                 endpoint
@@ -370,7 +388,7 @@ class RemoteGraph(Outside):
         }
 
     def _dead_participants(self) -> frozenset[bytes]:
-        """Return the participants whose process was killed; the result is cached for a moment."""
+        """Return the GUIDs of participants whose process was killed. The result is cached briefly."""
         now = time.monotonic()
         looked_at, dead = self._dead
         if now - looked_at > 0.25:
@@ -391,7 +409,7 @@ def is_process_running(process: int) -> bool:
 
 
 def _is_zombie(process: int) -> bool:
-    """Return whether a process has ended but has not been waited for by its parent; known only on Linux."""
+    """Return whether a process has ended but its parent has not waited for it. Only on Linux."""
     try:
         stat = Path(f"/proc/{process}/stat").read_bytes()
     except OSError:

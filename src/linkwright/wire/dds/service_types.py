@@ -8,12 +8,12 @@ from linkwright.wire.dds.names import endpoint_id
 
 
 def service_facts(identity: bytes, endpoint: Endpoint, *, is_server: bool) -> bytes:
-    """Return the USER_DATA for both endpoints of a client or server, which marks them as belonging together.
+    """Return the USER_DATA for both endpoints of a client or server, which links them.
 
     Args:
-        identity: 16 bytes that are unique to them.
+        identity: 16 bytes that are unique to the client or server.
         endpoint: the client or the service.
-        is_server: whether it is a service.
+        is_server: whether `endpoint` is a service.
     """
     key = "serviceid" if is_server else "clientid"
     hash_text = _hash_of(endpoint)
@@ -21,12 +21,15 @@ def service_facts(identity: bytes, endpoint: Endpoint, *, is_server: bool) -> by
 
 
 def request_and_response_types(service_type: str) -> tuple[str, str]:
-    """Return the ROS types of the requests and the responses of a service, such as ``std_srvs/srv/SetBool``."""
+    """Return the ROS type names of the request and response of a service type.
+
+    An example of a service type is ``std_srvs/srv/SetBool``.
+    """
     return f"{service_type}_Request", f"{service_type}_Response"
 
 
 def _hash_of(endpoint: Endpoint) -> str:
-    """Return the announced hash of a service's type, or the type's own hash; empty for an unknown type."""
+    """Return the announced hash of a service's type, or the computed one; empty if unknown."""
     if endpoint.type_hash:
         return endpoint.type_hash
     try:

@@ -2,11 +2,11 @@
 
 A service consists of two topics. rmw_cyclonedds_cpp writes a header before each request: the id of the client (64 bits)
 and the sequence number of the request. The server writes the same header before its reply. All replies reach all
-clients of a service, and each client picks its own. The USER_DATA of both endpoints of a client or a server marks them
-as belonging together.
+clients of a service, and each client picks its own replies. The USER_DATA of both endpoints of a client or a server
+links them.
 
-rmw_fastrtps_cpp sends the same data outside the samples (inline QoS), which Cyclone neither passes on nor writes.
-Services that are called from there, and clients that call servers there, have a second reader and writer for that
+rmw_fastrtps_cpp sends the same data outside the samples (inline QoS), which Cyclone neither passes on nor writes. For
+the clients and servers of rmw_fastrtps_cpp, each service and client has a second reader and writer
 (`linkwright.wire.dds.fast_services`).
 """
 
@@ -60,7 +60,7 @@ class Pair:
 
     Args:
         endpoint: the client or service.
-        domain: the domain to create them in.
+        domain: the domain in which they are created.
         is_server: whether the endpoint is a service.
     """
 
@@ -71,7 +71,7 @@ class Pair:
         self.request_topic = dds_topic(Role.REQUEST, endpoint.name)
         self.reply_topic = dds_topic(Role.REPLY, endpoint.name)
         facts = service_facts(os.urandom(16), endpoint, is_server=is_server)
-        # Described by name only, because requests of Fast DDS arrive without the header.
+        # Only the names of the types are described, because requests of Fast DDS arrive without the header.
         described = (domain.types.by_name(half) for half in request_and_response_types(endpoint.type_name))
         request = participant.create_topic(self.request_topic, next(described))
         reply = participant.create_topic(self.reply_topic, next(described))
@@ -82,24 +82,25 @@ class Pair:
         self.reader_guid = self._dds.guid(self.reader)
         self.writer_guid = self._dds.guid(self.writer)
         endpoint.gid = self.reader_guid if is_server else self.writer_guid
-        # Cyclone wakes a thread until a status is taken. A server takes none: it queries the matches when it replies.
+        # Cyclone wakes a thread until a status is taken. A server takes none, because it queries the matches when it
+        # replies.
         self._dds.dds_set_status_mask(self.reader, DATA_AVAILABLE | (0 if is_server else SUBSCRIPTION_MATCHED))
         self._dds.dds_set_status_mask(self.writer, 0 if is_server else PUBLICATION_MATCHED)
 
     def has_matched(self, entity: int) -> bool:
-        """Return whether the reader or writer has gained or lost a match since the last call."""
+        """Return whether the matches of a reader or writer have changed since the last call."""
         mask = SUBSCRIPTION_MATCHED if entity == self.reader else PUBLICATION_MATCHED
         status = c.c_uint32()
         self._dds.dds_take_status(entity, c.byref(status), mask)
         return bool(status.value)
 
     def samples(self) -> Iterator[tuple[bytes, Any]]:
-        """Take the samples that have arrived, as CDR, each with Cyclone's sample info."""
+        """Take the samples that have arrived, as CDR; yield each with Cyclone's sample info."""
         taken = self._dds.take_bytes(self.reader, ANY_STATE, _AT_ONCE)
         return (sample for sample in (taken if isinstance(taken, list) else ()) if sample[1].valid_data)
 
     def write(self, client_id: int, number: int, message: Any) -> None:
-        """Write a request or a reply."""
+        """Write a request or a reply, with the header that identifies the request."""
         write(self.writer, _LITTLE_ENDIAN + HEADER.pack(client_id, number) + to_cdr(message)[_ENCAPSULATION:])
 
     def close(self) -> None:
@@ -108,12 +109,14 @@ class Pair:
 
 
 class OutsideServer:
-    """The servers of other processes, as a client of this process calls them (`graph.endpoints.client.OutsideService`).
+    """The servers of other processes, as a client of this process calls them.
+
+    Implements `linkwright.graph.endpoints.service.OutsideService`.
 
     Args:
         client: the client.
         domain: the domain with the servers.
-        matched: called when an endpoint is matched or has left, in the receiving thread.
+        matched: called in the receiving thread when an endpoint was matched or has left.
     """
 
     def __init__(self, client: Client[Any, Any], domain: Domain, matched: Callable[[], None]) -> None:
@@ -129,7 +132,7 @@ class OutsideServer:
         self._fast: FastClient | None = None
 
     def meet_fast(self, participant: RtpsParticipant) -> None:
-        """Call servers on Fast DDS too."""
+        """Start calling servers on Fast DDS, too."""
         self._fast = FastClient(self._client, participant, self._remote.is_dead)
 
     def send(self, request: Any, answer: Callable[[Any], None], number: int) -> Callable[[], None]:
@@ -154,13 +157,13 @@ class OutsideServer:
         return count == _AT_ONCE
 
     def on_writer_status(self) -> bool:
-        """Handle a reader that was matched with the writer or left it."""
+        """Handle a change in the readers that match the writer. Returns False: there are no samples."""
         if self.pair.has_matched(self.pair.writer):
             self._matched()
         return False
 
     def review(self) -> None:
-        """Update whether there is a server whose reader and writer are both matched with ours."""
+        """Update whether there is a server whose reader and writer both match ours."""
         self._by_cyclone = self._server_is_there()
         is_ready = self._by_cyclone or (self._fast is not None and self._fast.is_ready())
         if is_ready != self._is_ready:
@@ -168,7 +171,7 @@ class OutsideServer:
             self._client.set_outside(self if is_ready else None)
 
     def close(self) -> None:
-        """Delete the endpoints; pending requests stay unanswered."""
+        """Delete the endpoints. Pending requests stay unanswered."""
         self._client.set_outside(None)
         self._answers.clear()
         if self._fast is not None:
@@ -195,7 +198,7 @@ class IncomingService:
     Args:
         service: the service.
         domain: the domain with the clients.
-        waits: called when a reply has to wait for its client.
+        waits: called when a reply must wait until its client is reachable.
     """
 
     def __init__(self, service: Service[Any, Any], domain: Domain, waits: Callable[[], None]) -> None:
@@ -225,14 +228,14 @@ class IncomingService:
         return count == _AT_ONCE
 
     def meet_fast(self, participant: RtpsParticipant) -> None:
-        """Start answering clients on Fast DDS too."""
+        """Start answering clients on Fast DDS, too."""
         self._fast = FastServer(self._service, participant)
         early, self._early = self._early, []
         for request in early:
             self._fast.on_early_request(request)
 
     def review(self) -> None:
-        """Write the replies whose client can be reached by now, or has been unreachable for too long."""
+        """Write replies whose clients are reachable by now, or were unreachable for too long."""
         with self._lock:
             for _ in range(len(self._late)):
                 due, sender, client_id, number, response = self._late.popleft()
@@ -245,7 +248,7 @@ class IncomingService:
 
     @property
     def has_more_to_do(self) -> bool:
-        """Whether replies wait for their clients, or requests for the discovery of their clients."""
+        """Whether replies or requests wait until their clients are discovered."""
         return bool(self._late) or (self._fast is not None and self._fast.has_more_to_do)
 
     def close(self) -> None:
@@ -255,7 +258,7 @@ class IncomingService:
         self.pair.close()
 
     def _from_fast(self, sender: RemoteEndpoint | None, data: bytes, info: Any) -> bool:
-        """Return whether a request came from Fast DDS; if so, pass it to `FastServer`, which answers such clients."""
+        """Return whether a request came from Fast DDS; if so, pass it to `FastServer`."""
         guid = sender.guid if sender else self._dds.writer_guid(self.pair.reader, info.publication_handle)
         if not is_fast(guid):
             return False
@@ -277,7 +280,7 @@ class IncomingService:
                 self._waits()
 
     def _can_reach(self, sender: RemoteEndpoint | None) -> bool:
-        """Return whether the client's reader is matched with our writer; before that, it would miss the reply."""
+        """Return whether the client's reader matches our writer; otherwise it would miss the reply."""
         readers = (self._remote.endpoint(handle) for handle in self._dds.matched(self.pair.writer, writer=True))
         return any(_have_same_owner(sender, reader, "clientid") for reader in readers)
 
@@ -285,7 +288,7 @@ class IncomingService:
 def _have_same_owner(a: RemoteEndpoint | None, b: RemoteEndpoint | None, key: str) -> bool:
     """Return whether two endpoints belong to the same client or server.
 
-    They are compared by the ID, or by the participant if there is no ID.
+    The comparison uses the ID in the USER_DATA, or the participant if there is no ID.
     """
     if a is None or b is None:
         return False
@@ -297,7 +300,7 @@ def _have_same_owner(a: RemoteEndpoint | None, b: RemoteEndpoint | None, key: st
 def _split_sample(data: bytes) -> tuple[int, int, bytes]:
     """Split a sample into the client's id, the sequence number and the body as CDR.
 
-    Without a header, the body is empty.
+    If the sample is too short for the header, the body is empty.
     """
     if len(data) < _BODY:
         return 0, 0, b""

@@ -1,4 +1,4 @@
-"""The settings of DDS from the environment: the domain, the range of discovery, and Cyclone's configuration.
+"""The settings of DDS from the environment: domain, discovery range, Cyclone configuration.
 
 By default, a process communicates only inside its machine; `docs/decisions/0011-dds.md` explains the parts of the
 configuration. If ROS's own variables set the range, they are applied as in rmw_cyclonedds_cpp.
@@ -39,16 +39,16 @@ _STATIC_PEERS_SEPARATOR = ";"
 
 
 def most_participants(domain_id: int) -> int:
-    """Return the maximum number of processes of a domain on one machine.
+    """Return the maximum number of participants of a domain on one machine.
 
-    Each process takes two ports, and the highest domains have few left. The ports are those of RTPS (DDSI-RTPS 2.5,
-    9.6.1).
+    Each participant uses two ports, and only a few ports are left for the highest domains. The ports are those of RTPS
+    (DDSI-RTPS 2.5, 9.6.1).
     """
     return min(_PARTICIPANTS, (_LAST_PORT - _FIRST_UNICAST_PORT - _PORTS_OF_A_DOMAIN * domain_id) // 2)
 
 
 class Range(Enum):
-    """The range in which participants are looked for (ROS_AUTOMATIC_DISCOVERY_RANGE)."""
+    """The range in which other participants are looked for (ROS_AUTOMATIC_DISCOVERY_RANGE)."""
 
     MACHINE = "machine"
     """Our own default: this machine, on all its ways."""
@@ -65,15 +65,15 @@ class Settings:
 
     Attributes:
         domain_id: the DDS domain.
-        range: the range in which others are looked for.
-        configurations: fragments for Cyclone; the first one that it accepts is used.
+        range: the range in which other participants are looked for.
+        configurations: XML fragments for Cyclone; the first one that Cyclone accepts is used.
         gid_size: the size in bytes of a gid in ``ros_discovery_info`` until a ROS 2 node is discovered.
         warnings: warnings for the user.
         user_configuration: the value of CYCLONEDDS_URI.
         own_configurations: the fragments without the user's configuration.
         peers: other machines to contact without multicast.
         enclave: the security enclave of the nodes.
-        fragment_size: the bytes of a sample up to which it certainly fits into one packet.
+        fragment_size: the size in bytes up to which a sample always fits into one packet.
         on_loopback: the configurations that use loopback only; empty if discovery may leave the machine.
     """
 
@@ -95,7 +95,7 @@ def read_settings(environment: Mapping[str, str] | None = None, *, domain_id: in
 
     Args:
         environment: the variables; those of this process if omitted.
-        domain_id: takes precedence over ROS_DOMAIN_ID.
+        domain_id: the domain, which takes precedence over ROS_DOMAIN_ID; None for ROS_DOMAIN_ID.
 
     Raises:
         LinkwrightError: DDS101, the domain is not valid.
@@ -125,7 +125,10 @@ def read_settings(environment: Mapping[str, str] | None = None, *, domain_id: in
 
 
 def _range(variables: Mapping[str, str], warnings: list[str]) -> Range:
-    """Return the discovery range: ROS_LOCALHOST_ONLY takes precedence over ROS_AUTOMATIC_DISCOVERY_RANGE, as in rcl."""
+    """Return the discovery range, from ROS_LOCALHOST_ONLY or ROS_AUTOMATIC_DISCOVERY_RANGE.
+
+    As in rcl, ROS_LOCALHOST_ONLY takes precedence.
+    """
     localhost_only = variables.get("ROS_LOCALHOST_ONLY", "")
     if localhost_only == "1":
         return Range.LOCALHOST
@@ -181,7 +184,7 @@ _OTHERS = '<NetworkInterface autodetermine="true"/>'
 def _machine(interfaces: str, addresses: list[str], most: int, *, multicast: bool) -> str:
     """Return a configuration for discovery on this machine.
 
-    It uses unicast to each participant index at the machine's own addresses, and multicast that never leaves the
+    Discovery uses unicast to each participant index at the machine's own addresses, and multicast that never leaves the
     machine (TTL 0). Multicast is received on loopback only, so that announcements of other machines are ignored.
     """
     peers = "".join(f'<Peer address="{address}"/>' for address in ("127.0.0.1", *addresses))
@@ -201,12 +204,12 @@ def _machine(interfaces: str, addresses: list[str], most: int, *, multicast: boo
 
 
 def _stays_here(reach: Range, peers: list[str]) -> bool:
-    """Return whether only processes of this machine are looked for."""
+    """Return whether discovery is restricted to processes of this machine."""
     return reach is Range.MACHINE or (reach is Range.LOCALHOST and not peers)
 
 
 def _fragments(reach: Range, peers: list[str], most: int) -> list[str]:
-    """Return configurations in order of preference, without the user's own."""
+    """Return the configurations in order of preference, without the user's own configuration."""
     if _stays_here(reach, peers):
         addresses = own_addresses()[:_OWN_ADDRESSES]
         loopback_alone = [
@@ -224,7 +227,7 @@ def _fragments(reach: Range, peers: list[str], most: int) -> list[str]:
             f"<Tag>ros_discovery_off_{os.getpid()}</Tag></Discovery></Domain></CycloneDDS>"
         )
         return [off]
-    from xml.sax.saxutils import quoteattr  # imports modules of urllib, which are not usually needed
+    from xml.sax.saxutils import quoteattr  # imported here: it loads modules of urllib, which are rarely needed
 
     local = reach is Range.LOCALHOST
     listed = _THIS_MACHINE + "".join(f"<Peer address={quoteattr(peer)} PruneDelay='inf'/>" for peer in peers)
@@ -242,7 +245,7 @@ _REQUEST = "256s"
 def own_addresses() -> list[str]:
     """Return the IPv4 addresses of the interfaces other than loopback, in the system's order.
 
-    Cyclone prints an error if it is given an interface that does not exist, and a process that is set to stay on the
+    Cyclone prints an error if it is given an interface that does not exist. A process that is configured to stay on the
     machine may be reachable only at the address of its interface.
     """
     addresses = _by_interface() if sys.platform.startswith("linux") else _by_name()
@@ -255,7 +258,7 @@ def _by_interface() -> list[str]:
 
 
 def _address(asking: socket.socket, name: str) -> str:
-    """Return the address of an interface; empty if it has none."""
+    """Return the address of an interface; empty if the interface has none."""
     from fcntl import ioctl
 
     try:

@@ -1,19 +1,20 @@
-"""The Cyclone types of a domain's topics; each is created once and kept until the domain is closed.
+"""The Cyclone types of a domain's topics, which are kept until the domain is closed.
 
 Two properties of Cyclone's Python package prevent using its types directly.
 
 First, the package cannot create a topic without a description of the type, and the description is sent with each
 endpoint. That is harmful: Cyclone compares descriptions if both sides have one, and cannot read those that Fast DDS 3
 sends for types with sequences, so that not even ``ros_discovery_info`` would be shared with a node on rmw_fastrtps_cpp.
-rmw_cyclonedds_cpp up to Jazzy sends none. A type is a C structure whose first member points to a table of functions
-(``ddsi_sertype_ops``). Here the type gets a table of ours without the functions that describe the type.
+rmw_cyclonedds_cpp up to Jazzy sends no descriptions. A type is a C structure whose first member points to a table of
+functions (``ddsi_sertype_ops``). Here that pointer is replaced by a pointer to a copy of the table without the
+functions that describe the type.
 
 Second, Cyclone's table of instances keeps the key of a sample beyond the lifetime of its topic. The package's keys
-point to their type to see whether it has key members at all, but they are not counted as references to it. ROS types
-have no keys, so all of them share one entry, the entry of the topic that was written first. If that type were freed
-with its last topic, each further sample of any topic would be compared through a dangling pointer. Entries would then
-not be found again and accumulate, or the wrong one would be freed, which ends in a segmentation fault. Therefore no
-type is freed before its domain is closed.
+point to their type to determine whether the type has key members, but they are not counted as references to it. ROS
+types have no keys, so all of them share one entry, the entry of the topic that was written first. If that type were
+freed with its last topic, each further sample of any topic would be compared through a dangling pointer. Then either
+entries are not found again and accumulate, or the wrong entry is freed, which ends in a segmentation fault. Therefore
+no type is freed before its domain is closed.
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ _VERSION_ON_WINDOWS = 1
 
 
 class TopicTypes:
-    """The types of one domain; may be used from any thread."""
+    """The types of one domain. Any thread may use this object."""
 
     def __init__(self) -> None:
         self._dds = load()
@@ -50,14 +51,17 @@ class TopicTypes:
 
         Args:
             participant: Cyclone's handle of the participant.
-            name: its DDS name.
-            described_type: the class that describes its type to Cyclone (`WireTypes`).
+            name: the topic's DDS name.
+            described_type: the class that describes the topic's type to Cyclone (`WireTypes`).
+
+        Returns:
+            Cyclone's handle of the topic.
 
         Raises:
-            CycloneError: Cyclone refuses it.
+            CycloneError: Cyclone refuses the topic.
         """
         what = f"topic '{name}'"
-        with self._lock:  # no other thread sees a type that is being created
+        with self._lock:  # no other thread may see a type while it is created
             address = self._made.get(described_type)
             if address is None:
                 address = self._made[described_type] = self._new(participant, described_type, what)
@@ -68,7 +72,7 @@ class TopicTypes:
         return check_call(code, what)
 
     def free(self) -> None:
-        """Free the types of a closed domain, once Cyclone no longer refers to them."""
+        """Free the types of a closed domain, after Cyclone has stopped referring to them."""
         while self._made:
             self._dds.ddsi_sertype_free(self._made.popitem()[1])
 
@@ -76,8 +80,9 @@ class TopicTypes:
         """Create a type and return its address.
 
         The type belongs to an unused topic of the Python package, which is deleted with `participant`. If the topic
-        were deleted immediately, Cyclone would drop the description while it reads those of other types without a lock
-        (``ddsi_topic_descriptor_from_type``): graphs of a process that joined at the same time crashed.
+        were deleted immediately, Cyclone would drop its description while it reads the descriptions of other types
+        without a lock (``ddsi_topic_descriptor_from_type``). Graphs of one process that joined at the same time
+        then crashed.
         """
         name = _UNUSED.format(len(self._made))
         unused = check_call(self._dds.create_topic(participant, name, described_type, None, None), what)
@@ -91,10 +96,10 @@ class TopicTypes:
 
 @lru_cache
 def _table_without_descriptions(table: int) -> int:
-    """Return the address of a copy of a function table without the functions that describe types.
+    """Copy a function table without the functions that describe types; return its address.
 
-    The address of the table itself is returned if its layout is unknown. The copy is never freed, because Cyclone may
-    use it until the process ends.
+    If the layout of the table is not known, the address of the table itself is returned. The copy is never freed,
+    because Cyclone may use it until the process ends.
     """
     dds = load()
     known = (c.c_void_p * _FUNCTIONS).from_address(table)

@@ -1,4 +1,4 @@
-"""Publishers and subscriptions over DDS: a writer for each publisher, a reader for each subscription."""
+"""Publishers and subscriptions over DDS, with one writer or reader for each."""
 
 from __future__ import annotations
 
@@ -59,17 +59,20 @@ _LARGEST_KEPT = 16 << 20
 
 @lru_cache(maxsize=1)
 def keep_large_blocks() -> None:
-    """Make the C library keep freed blocks of the size of images for the next image.
+    """Make the C library keep freed memory blocks of the size of images for the next image.
 
-    By default glibc returns them to the system, which has to clear each page again: half of the processor time of an
+    By default glibc returns them to the system, which must clear each page again: half of the processor time of an
     image publisher. It keeps blocks up to the size of the largest block that was ever mapped and freed
-    (``M_MMAP_THRESHOLD`` in mallopt(3)), so this function frees such a block, whose pages are never touched.
+    (``M_MMAP_THRESHOLD`` in mallopt(3)), so this function maps and frees such a block, without using its pages.
     """
     bytes(_LARGEST_KEPT)
 
 
 def type_facts(message_class: Any) -> bytes:
-    """Return the type's hash as USER_DATA, which ROS 2 announces from Iron on and older distributions ignore."""
+    """Return the USER_DATA with the type's hash, as ROS 2 announces it from Iron on.
+
+    Older distributions ignore the hash.
+    """
     return f"typehash={type_hash(message_class)};".encode()
 
 
@@ -102,9 +105,10 @@ class MirroredTopic(ABC):
         self._log_limits = _LogLimits()
 
     def _describe_type(self, endpoint: Endpoint, domain: Domain) -> tuple[Any, bytes]:
-        """Return the type's description for Cyclone, and its hash as USER_DATA for other participants.
+        """Return the type's description for Cyclone, and the USER_DATA with the type's hash.
 
-        A type that no package here defines has only a name, which suffices if the messages are raw bytes.
+        For a type that no package here defines, the description is only its name. This suffices if the messages are raw
+        bytes.
         """
         announced = f"typehash={endpoint.type_hash};".encode() if endpoint.type_hash else b""
         try:
@@ -115,7 +119,7 @@ class MirroredTopic(ABC):
             return domain.types.by_name(endpoint.type_name), announced
 
     def _profile_of(self, endpoint: Any) -> QoSProfile:
-        """Return the quality of service that is offered or requested."""
+        """Return the QoS profile to offer or to request."""
         profile: QoSProfile = endpoint.qos_profile
         return profile
 
@@ -130,8 +134,8 @@ class OutgoingTopic(MirroredTopic):
     Args:
         publisher: the publisher.
         domain: the domain to write in.
-        mismatch: called when a subscription of another process requests more than is offered.
-        waiting: called when messages wait to be written, so that `review` should be called soon.
+        mismatch: called when a subscription of another process requests more than the publisher offers.
+        waiting: called when messages are queued, so that `review` must be called again soon.
     """
 
     _STATUS = PUBLICATION_MATCHED | OFFERED_INCOMPATIBLE_QOS
@@ -167,11 +171,17 @@ class OutgoingTopic(MirroredTopic):
         return False
 
     def review(self) -> bool:
-        """Write the samples that no longer wait for acknowledgements; return whether a sample still waits."""
+        """Write the samples that need not wait for acknowledgements any longer.
+
+        Returns whether samples are still queued.
+        """
         return self._backlog is not None and self._backlog.review()
 
     def acknowledged(self, nanoseconds: int) -> bool:
-        """Wait until all reliable readers have acknowledged all published samples; return whether they have."""
+        """Wait until all reliable readers have acknowledged all published samples.
+
+        Returns False if that takes longer than the given time.
+        """
         until = time.monotonic_ns() + nanoseconds
         while self.review():
             if not self._are_acknowledged(max(0, until - time.monotonic_ns())):
@@ -200,7 +210,10 @@ class OutgoingTopic(MirroredTopic):
         return self.acknowledged(0x7FFF_FFFF_FFFF_FFFF if seconds is None else int(seconds * 1e9))
 
     def _are_acknowledged(self, nanoseconds: int) -> bool:
-        """Return whether all readers acknowledge all samples that do not wait, within the given time."""
+        """Wait until all readers have acknowledged the written samples; return False on timeout.
+
+        Samples in the backlog are not considered.
+        """
         until = time.monotonic_ns() + nanoseconds
         if self._paced is not None and not self._paced.wait_until_written(nanoseconds / 1e9):
             return False
@@ -208,9 +221,10 @@ class OutgoingTopic(MirroredTopic):
         return code >= 0
 
     def _make_paced(self, domain: Domain) -> PacedWriter | None:
-        """Return a writer that sends through the pacer, or None if newer samples do not replace older ones.
+        """Return a writer that sends through the pacer, or None if the pacer cannot be used.
 
-        It requires that the packets of Cyclone have the form that the pacer sends.
+        The pacer requires that newer samples replace older ones, and that Cyclone's packets have the size that the
+        pacer sends.
         """
         profile = self._publisher.qos_profile
         if profile.history is HistoryPolicy.KEEP_ALL or domain.fragment_size != FRAGMENT:
@@ -219,15 +233,12 @@ class OutgoingTopic(MirroredTopic):
         return PacedWriter(self.guid, depth, self._write_published, self._fast_readers, domain.pacer)
 
     def _fast_readers(self) -> list[bytes]:
-        """Return the GUIDs of the readers of Fast DDS that the writer is matched with."""
+        """Return the GUIDs of the readers of Fast DDS that match the writer."""
         known = map(self._remote.endpoint, self._dds.matched(self.entity, writer=True))
         return [endpoint.guid for endpoint in known if endpoint is not None and endpoint.is_fast]
 
     def _make_backlog(self, fragment_size: int) -> Backlog | None:
-        """Return a queue for large samples.
-
-        None if the writer does not replace samples that readers may request again.
-        """
+        """Return a queue for large samples; None if the writer never replaces requested samples."""
         profile = self._publisher.qos_profile
         is_reliable = profile.reliability is not ReliabilityPolicy.BEST_EFFORT
         if not is_reliable or profile.history is HistoryPolicy.KEEP_ALL:
@@ -266,12 +277,12 @@ class OutgoingTopic(MirroredTopic):
     def _write_published(self, data: bytes, published: int | None) -> bool:
         """Write a sample with Cyclone; return whether Cyclone accepted it.
 
-        If the writer keeps all samples, or the sample has already been sent by the pacer, this method retries until
-        slow readers have caught up or the lease of dead readers has expired.
+        If the writer keeps all samples, or the pacer has already sent the sample, writing is retried until slow readers
+        have caught up or the lease of dead readers has expired.
 
         Args:
             data: the sample.
-            published: when it was published, in ns since the epoch; None for now.
+            published: when the sample was published, in ns since the epoch; None for now.
         """
         sample = Sample(data, len(data))
         now = time.monotonic()
@@ -290,7 +301,7 @@ class OutgoingTopic(MirroredTopic):
         return code
 
     def _failed(self, code: int) -> None:
-        """Log that messages are not sent: the first time, and again after some time."""
+        """Log that messages are not sent: once, and again after some time if they still fail."""
         if code >= 0 or self._participant.closed or self._publisher.destroyed or not self._log_limits.is_due("failed"):
             return
         reason = "the subscribers outside do not keep up" if code == TIMEOUT else describe(code)
@@ -299,10 +310,10 @@ class OutgoingTopic(MirroredTopic):
         )
 
     def log_mismatches(self, *, finally_: bool) -> None:
-        """Report the subscriptions of other processes that request more than this publisher offers.
+        """Report subscriptions of other processes that request more than this publisher offers.
 
         Args:
-            finally_: whether to report subscriptions whose node name is not known yet, too.
+            finally_: whether to report also subscriptions whose node name is not known yet.
         """
         offered = self._publisher.qos_profile
         for reader in self._remote.endpoints_of(self.topic_name, writers=False):
@@ -323,7 +334,10 @@ class IncomingTopic(MirroredTopic):
         self._subscription = subscription
 
     def on_status(self) -> bool:
-        """Pass on the samples that have arrived, and handle status changes; return whether there are more samples."""
+        """Pass on the samples that have arrived, and handle status changes.
+
+        Returns whether there are more samples.
+        """
         status = c.c_uint32()
         self._dds.dds_take_status(self.entity, c.byref(status), self._STATUS & ~DATA_AVAILABLE)
         if status.value:
@@ -355,7 +369,10 @@ class IncomingTopic(MirroredTopic):
         return len(samples) == AT_ONCE
 
     def _gid_of(self, handle: int) -> bytes:
-        """Return the publisher's identifier, which the reader may know before the discovery tables have it."""
+        """Return the GID of a publisher; zeros if it is not known.
+
+        The reader may know the GID before the discovery tables do.
+        """
         endpoint = self._remote.endpoint(handle)
         if endpoint is not None:
             return endpoint.guid
@@ -379,7 +396,11 @@ class IncomingTopic(MirroredTopic):
             self._mismatch(self)
 
     def log_mismatches(self, *, finally_: bool) -> None:
-        """Report the publishers of other processes that offer less than this subscription requests."""
+        """Report publishers of other processes that offer less than this subscription requests.
+
+        Args:
+            finally_: whether to report also publishers whose node name is not known yet.
+        """
         requested = self._subscription.qos_profile
         for writer in self._remote.endpoints_of(self.topic_name, writers=True):
             policies = incompatible_policies(writer.qos, requested)
@@ -392,7 +413,7 @@ class IncomingTopic(MirroredTopic):
 
 
 class _LogLimits:
-    """Limits how often messages are logged."""
+    """Limits how often warnings of a topic are logged."""
 
     _AGAIN_AFTER = 30.0
 
@@ -401,13 +422,13 @@ class _LogLimits:
         self._logged: dict[str, float] = {}
 
     def is_new(self, guid: bytes) -> bool:
-        """Return whether nothing has been logged for an endpoint so far."""
+        """Return whether this is the first call for an endpoint, whose mismatch must be logged."""
         is_new = guid not in self._guids
         self._guids.add(guid)
         return is_new
 
     def is_due(self, what: str) -> bool:
-        """Return whether it is time to log a message, for the first time or again."""
+        """Return whether a message should be logged, for the first time or again after some time."""
         now = time.monotonic()
         is_due = now - self._logged.get(what, -self._AGAIN_AFTER) >= self._AGAIN_AFTER
         if is_due:

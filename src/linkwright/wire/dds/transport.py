@@ -1,4 +1,4 @@
-"""The DDS transport: mirrors the graph of this process in a DDS domain."""
+"""The DDS transport, which mirrors the graph of this process in a DDS domain."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _SETTLED_AMONG_KNOWN = 0.05
 
 
 class DdsTransport(BackgroundTransport):
-    """The graph of this process in a DDS domain.
+    """Mirrors the graph of this process in a DDS domain.
 
     Args:
         settings: the domain and how to join it.
@@ -41,22 +41,22 @@ class DdsTransport(BackgroundTransport):
         super().__init__(settings.domain_id, self._remote, self._departures, logger, **options)
 
     def _make_engine(self) -> Engine:
-        # Imported in the thread that joins because loading Cyclone takes 0.15 s.
+        # Imported here, in the thread that joins, because loading Cyclone takes 0.15 s.
         from linkwright.wire.dds.engine import Engine as DdsEngine
 
         return DdsEngine(self._settings, self._remote, self._departures, self._work, self._logger)
 
     def _has_settled(self, quiet: float) -> bool:
-        """Return whether every participant has announced its nodes and there is nothing new."""
+        """Return whether all participants have announced their nodes and nothing changes any more."""
         return self._remote.is_complete() and (
             quiet >= SETTLED_AFTER or (quiet >= _SETTLED_AMONG_KNOWN and self._knows_all_processes())
         )
 
     def _knows_all_processes(self) -> bool:
-        """Return whether all processes that can take part are known, so that there is nothing to wait for.
+        """Return whether all processes in the domain are known, so that discovery need not wait.
 
-        This can be known only for Linkwright's processes on this machine, and only if no others are looked for. It
-        cannot be known if this process has several participants.
+        This is possible only if discovery is restricted to this machine, for processes of Linkwright, and if this
+        process has only one participant.
         """
         if self._settings.range is not Range.MACHINE:
             return False

@@ -1,9 +1,9 @@
-"""Descriptions of ROS types for Cyclone, which checks samples against them and announces them to other tools.
+"""Descriptions of ROS types for Cyclone, which checks samples against them.
 
-Cyclone compares types structurally if both sides describe theirs. Therefore they are described member by member, like
-the types that rmw_cyclonedds_cpp describes (final, keyless; ``byte`` and ``char`` are unsigned octets; an empty message
-has the member that rosidl adds to it). The content of samples never passes through these classes: it is CDR from
-`linkwright.messages`.
+Cyclone also announces the descriptions to other tools, and compares types structurally if both sides describe theirs.
+Therefore types are described member by member, like the types that rmw_cyclonedds_cpp describes (final, keyless;
+``byte`` and ``char`` are unsigned octets; an empty message has the member that rosidl adds to it). The content of
+samples never passes through these classes: it is CDR from `linkwright.messages`.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ DISCOVERY_TYPE = "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_"
 
 
 class UndescribableError(Exception):
-    """Raised when a type has a member that Cyclone's Python package cannot describe (wide strings)."""
+    """Raised when a type has a member that Cyclone's package cannot describe (wide strings)."""
 
 
 class WireTypes:
-    """Creates the descriptions, each once; may be used from any thread."""
+    """Creates the descriptions, each of them once. Any thread may use this object."""
 
     def __init__(self) -> None:
         self._made: dict[object, Any] = {}
@@ -38,14 +38,14 @@ class WireTypes:
         return self._described(definition_of(message_class))
 
     def discovery(self) -> Any:
-        """Return the description of ``rmw_dds_common/msg/ParticipantEntitiesInfo``, which has only its name.
+        """Return the description of ``rmw_dds_common/msg/ParticipantEntitiesInfo``: only its name.
 
-        Its members differ between distributions (`discovery_info`), and Cyclone would reject data that do not match.
+        The members differ between distributions (`discovery_info`), and Cyclone would reject data that do not match.
         """
         return self._named(DISCOVERY_TYPE)
 
     def by_name(self, type_name: str) -> Any:
-        """Return a description of a message type that has only its name, so that Cyclone does not check its samples."""
+        """Return a description with only a type's name, so that Cyclone does not check its samples."""
         return self._named(dds_type(type_name))
 
     def _named(self, name: str) -> Any:
@@ -66,7 +66,7 @@ class WireTypes:
             for field in structure.wire_fields:
                 members[field.name] = self._member(field.type)
         except UndescribableError:
-            return {}  # the name suffices for nodes that do not describe the type either, such as real ROS 2 nodes
+            return {}  # Without members, only the name is described, as real ROS 2 nodes do.
         return members
 
     def _member(self, field: FieldType) -> Any:
@@ -92,11 +92,11 @@ class WireTypes:
 
 
 def struct_class(type_name: str, members: dict[str, Any]) -> Any:
-    """Create a class that describes a structure.
+    """Create a class that describes a structure to Cyclone.
 
     Args:
-        type_name: its DDS name.
-        members: the names and `cyclonedds.idl.types` of its members.
+        type_name: the DDS name of the structure.
+        members: the `cyclonedds.idl.types` of the members, by name.
     """
     from cyclonedds.idl import make_idl_struct
 
@@ -121,11 +121,11 @@ def empty_type_data(type_name: str) -> tuple[bytes, bytes]:
 
     Source: DDS-XTypes 1.3, 7.3.4 and 7.6.3.2.2.
 
-    Cyclone's Python package creates the same data, but imports classes for all of XTypes to do so: that takes longer
+    Cyclone's Python package creates the same data, but imports classes for all of XTypes to do so. That takes longer
     than joining a domain and discovering all its participants.
 
     Args:
-        type_name: its DDS name.
+        type_name: the DDS name of the structure.
 
     Returns:
         Both as XCDR2, little-endian, without header.
@@ -150,7 +150,10 @@ def _pair(type_object: bytes) -> bytes:
 
 
 def _type_id(type_object: bytes) -> bytes:
-    """Encode the type identifier of a type object: its kind, EK_MINIMAL or EK_COMPLETE, and its EquivalenceHash."""
+    """Encode the type identifier of a type object.
+
+    It consists of its kind, EK_MINIMAL or EK_COMPLETE, and its EquivalenceHash.
+    """
     return type_object[:1] + md5(_sized(type_object), usedforsecurity=False).digest()[:14]
 
 
@@ -163,5 +166,5 @@ def _number(value: int) -> bytes:
 
 
 def _idl_types() -> Any:
-    """Return `cyclonedds.idl.types`, untyped because its classes use subscripts in unusual ways."""
+    """Return the module `cyclonedds.idl.types`, untyped because of its unusual subscripts."""
     return import_module("cyclonedds.idl.types")

@@ -17,14 +17,14 @@ _AT_ONCE = 64
 
 
 class WaitingThread(threading.Thread):
-    """Calls the handlers of entities when there is work for them.
+    """A thread that calls the handlers of entities when there is work for them.
 
     Args:
         name: the name of the thread.
         owner: the participant.
         report: called with the error when a handler fails; the thread continues.
         idle: called after the handlers, and after each call of `wake`; returns the seconds after which it must be
-            called again, or None.
+            called again, or None if it need not be.
     """
 
     def __init__(
@@ -45,21 +45,21 @@ class WaitingThread(threading.Thread):
         self._stopping = False
 
     def attach(self, entity: int, handler: Handler) -> None:
-        """Register a handler that is called whenever an enabled status of an entity is set."""
+        """Register a handler, which is called while an enabled status of the entity is set."""
         self._handlers[entity] = handler
         check_call(self._dds.dds_waitset_attach(self._waitset, entity, entity), "attaching")
 
     def detach(self, entity: int) -> None:
-        """Stop calling the handler of an entity, which may still be running."""
+        """Stop calling the handler of an entity. A call in progress continues."""
         self._handlers.pop(entity, None)
         self._dds.dds_waitset_detach(self._waitset, entity)
 
     def wake(self) -> None:
-        """Have `idle` called soon; may be called from any thread."""
+        """Wake the thread, which calls `idle`. Callable from any thread."""
         self._dds.dds_set_guardcondition(self._guard, True)
 
     def stop(self, timeout: float) -> bool:
-        """End the thread; return whether it has ended within the given number of seconds."""
+        """End the thread; return whether it has ended within `timeout` seconds."""
         self._stopping = True
         self.wake()
         if threading.current_thread() is not self and self.is_alive():

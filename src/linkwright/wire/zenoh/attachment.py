@@ -1,7 +1,7 @@
-"""The attachment of each message, request and reply: 33 bytes, in the format that zenoh-ext writes for rmw_zenoh_cpp.
+"""The attachment of each message, request and reply, in rmw_zenoh_cpp's format.
 
-It contains a sequence number, the time of sending, and the gid of the sender. A receiving rmw_zenoh_cpp terminates its
-process if the attachment is malformed, so each sample has one.
+The format is the one that zenoh-ext writes: 33 bytes with a sequence number, the time of sending, and the gid of the
+sender. A receiving rmw_zenoh_cpp terminates its process if the attachment is malformed, so each sample has one.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ class Attachment(NamedTuple):
 
     Attributes:
         number: the sequence number, starting at 1; a reply has the number of its request.
-        sent_ns: when it was sent, in nanoseconds since the epoch.
+        sent_ns: when the sample was sent, in nanoseconds since the epoch.
         gid: the gid of the publisher or the client, 16 bytes.
     """
 
@@ -35,7 +35,7 @@ def write(number: int, sent_ns: int, gid: bytes) -> bytes:
 
 
 def read(data: bytes | None) -> Attachment | None:
-    """Decode an attachment; return None if there is none or it is malformed."""
+    """Decode an attachment; return None if it is missing or malformed."""
     if data is None or len(data) != _LAYOUT.size:
         return None
     number, sent_ns, size, gid = _LAYOUT.unpack(data)

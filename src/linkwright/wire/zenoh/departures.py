@@ -1,12 +1,14 @@
-"""Distinguish publishers that were lost (killed, crashed, out of reach) from publishers that left in order.
+"""Tells lost publishers (killed, crashed, out of reach) from those that left in order.
 
 A token disappears when its owner withdraws it, and when its session ends for any reason. Linkwright's sessions have an
-additional token, and announce that they leave before that token disappears: without the announcement, their endpoints
+additional token, and announce their departure before that token disappears. Without this announcement, their endpoints
 are lost. Other sessions withdraw the endpoints of a node before the node itself. When a session is killed, all its
-tokens disappear together, in no particular order. So an endpoint is lost if its node disappears before it.
+tokens disappear together, in no particular order. So an endpoint of another session is lost if its node disappears
+before the endpoint.
 
-A client of a router requests a session's other tokens once it knows of a publisher there (`Interests.follow`). A
-session that ends before the router has answered, milliseconds later, leaves no evidence and is not counted as lost.
+A client of a router requests a session's other tokens once it knows of a publisher of the session
+(`Interests.follow`). If the session ends before the router has answered, milliseconds later, nothing shows how it
+ended, and it is not counted as lost.
 """
 
 from __future__ import annotations
@@ -29,12 +31,12 @@ GRACE = 0.4
 
 @dataclass(slots=True)
 class _Gone:
-    """A publisher that is gone.
+    """A publisher whose token has disappeared.
 
     Attributes:
-        key: the key expression of its token.
-        token: its token.
-        due: the time at which it is judged, in seconds of the steady clock.
+        key: the key expression of the token.
+        token: the token.
+        due: when to decide whether the publisher is lost, in seconds of the steady clock.
     """
 
     key: str
@@ -43,7 +45,9 @@ class _Gone:
 
 
 class Departures:
-    """Judges how publishers left; everything except `watch` runs in the discovery thread.
+    """Decides whether publishers that disappeared were lost. All but `watch` is for one thread.
+
+    This thread is the discovery thread.
 
     Args:
         remote: the remote graph.
@@ -62,7 +66,7 @@ class Departures:
         self._nodes_gone: dict[tuple[str, str], float] = {}
 
     def watch(self, lost: Callable[[EndpointInfo], None]) -> None:
-        """Register a callback for each lost publisher; it is called in the discovery thread."""
+        """Register a callback for lost publishers, which runs in the discovery thread."""
         self._watchers.append(lost)
 
     @property
@@ -72,7 +76,7 @@ class Departures:
 
     @property
     def here(self) -> AbstractSet[str]:
-        """The live sessions of Linkwright, which announce their end."""
+        """The ids of the live sessions of Linkwright, which announce their departure."""
         return self._here
 
     def session_started(self, session: str) -> None:
@@ -99,7 +103,7 @@ class Departures:
             self._gone.append(_Gone(key, token, self._now() + GRACE))
 
     def review(self) -> float | None:
-        """Report the publishers that now count as lost.
+        """Report the publishers that have become lost since the last call.
 
         Returns:
             The seconds until the next call, or None if no call is needed.
@@ -127,7 +131,7 @@ class Departures:
         return token.node_key in self._unordered or self._remote.has_endpoints(token.node_key)
 
     def _forget(self, now: float) -> None:
-        """Forget nodes and sessions that have been gone for long enough."""
+        """Remove the records of nodes and sessions that disappeared long enough ago."""
         for node_key, since in tuple(self._nodes_gone.items()):
             if now - since > GRACE:
                 del self._nodes_gone[node_key]

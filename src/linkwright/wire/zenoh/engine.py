@@ -1,4 +1,4 @@
-"""Create and withdraw the mirrors of this process's endpoints in a Zenoh session.
+"""Creates and withdraws the mirrors of this process's endpoints in a Zenoh session.
 
 One thread does this in the order of the requests, and updates the tables of the remote graph. Zenoh's threads pass on
 incoming traffic as bytes.
@@ -42,10 +42,10 @@ class Engine(AnyEngine):
     Args:
         settings: the domain and how to join it.
         remote: the tables to fill.
-        departures: judges how remote publishers left.
+        departures: decides whether remote publishers that disappeared were lost.
         work: the queue of requests; other threads append to it and call `wake`.
         logger: logs problems.
-        patience: opens the session.
+        patience: opens the session, which may take several attempts.
 
     Raises:
         LinkwrightError: the session cannot be opened.
@@ -92,16 +92,19 @@ class Engine(AnyEngine):
         self._thread.start()
 
     def wake(self) -> None:
-        """Have the queue of requests processed soon; may be called from any thread."""
+        """Wake the thread that processes the queue of requests. Callable from any thread."""
         self._wake.set()
 
     def has_neighbours(self) -> bool:
-        """Return whether another session or a router is connected to this session."""
+        """Return whether this session is connected to another session or a router."""
         info = self._session.info
         return bool(info.peers_zid() or info.routers_zid())
 
     def close(self) -> None:
-        """End the session; announce the departure of our nodes unless the process ends because of an error."""
+        """End the session.
+
+        The departure of our nodes is announced, unless the process ends because of an error.
+        """
         self._ended.set()
         self._wake.set()
         if self._thread.ident is not None and self._thread is not threading.current_thread():
@@ -118,7 +121,10 @@ class Engine(AnyEngine):
         close_session(self._session)
 
     def abandon(self) -> None:
-        """Stop sending, and keep all Zenoh objects forever: in a forked process, destroying them would never finish."""
+        """Stop sending, and keep all Zenoh objects forever.
+
+        In a forked process, destroying them would never finish.
+        """
         import ctypes
 
         self._ended.set()
@@ -127,7 +133,7 @@ class Engine(AnyEngine):
                 mirrored.abandon()
         ctypes.pythonapi.Py_IncRef(ctypes.py_object(self))
 
-    # --- work, in the thread -----------------------------------------------------------------------------------------
+    # --- work in the engine's thread ---------------------------------------------------------------------------------
 
     def add_node(self, node: NodeIdentity) -> None:
         """Announce a node."""
@@ -170,7 +176,7 @@ class Engine(AnyEngine):
 
         token = self._token_of(subscription, EndpointKind.SUBSCRIPTION)
         key = token.data_key
-        if token.type_hash == tokens.NO_HASH and self._settings.hashes:  # type not known here: accept any hash
+        if token.type_hash == tokens.NO_HASH and self._settings.hashes:  # unknown type: accept any hash
             key = tokens.data_key(token.domain_id, token.name, token.type_name, "*")
         self._announce(subscription, IncomingTopic(subscription, token, self._session, key, self._own_gids))
 
@@ -193,7 +199,7 @@ class Engine(AnyEngine):
     def close_endpoint(self, endpoint: Any) -> None:
         """Stop mirroring an endpoint.
 
-        Withdraw its token first, so that other processes no longer count on the endpoint.
+        The token is withdrawn first, so that other processes no longer rely on the endpoint.
         """
         token = self._tokens.pop(endpoint, None)
         if token is not None:
@@ -207,7 +213,7 @@ class Engine(AnyEngine):
                 self._remote.forget_endpoints(kind, mirrored.token.data_key)
 
     def _announce(self, endpoint: Any, mirrored: Any) -> None:
-        """Announce an endpoint that has become reachable."""
+        """Announce an endpoint whose mirror has been created, and subscribe to matching tokens."""
         self._mirrored[endpoint] = mirrored
         if endpoint.is_listed:
             self._tokens[endpoint] = self._session.liveliness().declare_token(mirrored.token.key)
@@ -243,7 +249,7 @@ class Engine(AnyEngine):
         try:
             return type_hash(endpoint.type_name)
         except InterfaceNotFoundError:
-            if kind in (EndpointKind.SUBSCRIPTION, EndpointKind.CLIENT) and endpoint.raw:  # raw: bytes suffice
+            if kind in (EndpointKind.SUBSCRIPTION, EndpointKind.CLIENT) and endpoint.raw:  # raw endpoints need no hash
                 return tokens.NO_HASH
             raise
 
@@ -252,13 +258,13 @@ class Engine(AnyEngine):
 
         Args:
             seconds: the maximum time that processes have to announce themselves.
-            answered: called when all have answered or the time is over, from any thread.
+            answered: called from any thread when all have answered or the time is over.
         """
         self._interests.ask_all(seconds, answered)
         self._interests.add_all()
 
     def note_news(self) -> None:
-        """Process the tokens that were received."""
+        """Process the tokens that have been received since the last call."""
         while self._news:
             appeared, key = self._news.popleft()
             self._has_changed = self._note(appeared=appeared, key=key) or self._has_changed
@@ -273,7 +279,7 @@ class Engine(AnyEngine):
         """Whether the calling thread is the engine's thread."""
         return threading.current_thread() is self._thread
 
-    # --- news, from threads of Zenoh ---------------------------------------------------------------------------------
+    # --- callbacks from threads of Zenoh -----------------------------------------------------------------------------
 
     def _on_token(self, sample: zenoh.Sample) -> None:
         self._news.append((sample.kind == zenoh.SampleKind.PUT, str(sample.key_expr)))
@@ -326,7 +332,7 @@ class Engine(AnyEngine):
             self._departures.session_started(session)
         elif what == "here":
             self._departures.session_ended(session)
-            self._follows = False  # stop listening to the tokens of that session
+            self._follows = False  # makes `note_news` end the subscription to that session
         elif appeared:
             self._departures.session_leaves(session)
 
@@ -336,7 +342,7 @@ class Engine(AnyEngine):
             mirrored.review(self._remote.count(kind, mirrored.token.data_key))
 
     def _look_for_router(self) -> None:
-        """Wait for a router if ZENOH_ROUTER_CHECK_ATTEMPTS requests it, then continue without one."""
+        """Wait for a router if ZENOH_ROUTER_CHECK_ATTEMPTS is set, then continue without one."""
         attempts = self._settings.attempts
         for attempt in itertools.count():
             if self._ended.is_set() or (attempts is not None and attempt >= attempts):
@@ -351,7 +357,7 @@ class Engine(AnyEngine):
             )
 
     def _announce_departure(self) -> None:
-        """Announce that this session leaves, then withdraw its endpoints and its nodes."""
+        """Announce the departure of this session, then withdraw its endpoints and its nodes."""
         left = self._session.liveliness().declare_token(self._own_token("left"))
         for token in self._tokens.values():
             token.undeclare()

@@ -1,8 +1,8 @@
-"""The liveliness tokens that a session subscribes to.
+"""The liveliness tokens to which a session subscribes.
 
-The router sends every token to each session that subscribes to all tokens. In a hall of robots, that is the square of
-their number. Therefore a client of a router, as robots are, subscribes only to the tokens that its own nodes and
-endpoints need, until the graph is queried (`docs/decisions/0076-tokens-on-demand.md`).
+The router sends every token to each session that subscribes to all tokens. For a hall full of robots, this traffic
+grows with the square of their number. Therefore a client of a router, as robots are, subscribes only to the tokens that
+its own nodes and endpoints need, until the graph is queried (`docs/decisions/0076-tokens-on-demand.md`).
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ OURS = "@linkwright"
 
 
 class Interests:
-    """The tokens that a session subscribes to; used by one thread after `__init__`.
+    """The tokens to which a session subscribes. After `__init__`, only one thread may use this.
 
     Args:
         session: the session.
         domain_id: the ROS domain.
-        hear: called with each token that appears or disappears, from threads of Zenoh.
+        hear: called, from threads of Zenoh, with each token that appears or disappears.
     """
 
     def __init__(self, session: zenoh.Session, domain_id: int, hear: Callable[[zenoh.Sample], None]) -> None:
@@ -42,13 +42,16 @@ class Interests:
         """Whether all tokens of the domain are heard of."""
 
     def add(self, key: str) -> None:
-        """Subscribe to the tokens that match a key expression; subscriptions to the same expression are counted."""
+        """Subscribe to the tokens that match a key expression.
+
+        Repeated subscriptions to the same expression are counted.
+        """
         self._counts[key] += 1
         if not self.in_all and self._counts[key] == 1:
             self._declare(key)
 
     def remove(self, key: str) -> bool:
-        """Undo one `add`; return whether these tokens are no longer subscribed to."""
+        """Undo one `add`; return whether the session no longer subscribes to these tokens."""
         self._counts[key] -= 1
         if self._counts[key]:
             return False
@@ -59,13 +62,13 @@ class Interests:
         return not self.in_all
 
     def follow(self, publishing: AbstractSet[str], there: AbstractSet[str]) -> None:
-        """Subscribe to all tokens of other sessions, which show how the sessions leave.
+        """Subscribe to all tokens of other sessions, from which it follows how the sessions leave.
 
         The subscription to a session ends when none of its tokens is left.
 
         Args:
-            publishing: the sessions whose publishers are known; ignored once all tokens are subscribed to.
-            there: the live sessions, known by their own token or any other.
+            publishing: the ids of the sessions whose publishers are known.
+            there: the ids of the live sessions, known by their own token or any other.
         """
         for session in self._followed - there:
             for key in self._keys_of(session):
@@ -92,7 +95,7 @@ class Interests:
     def ask_all(self, seconds: float, answered: Callable[[], None]) -> None:
         """Request the live tokens of the domain.
 
-        Call it before `add_all`, after which Zenoh answers from its own memory.
+        This must be called before `add_all`, after which Zenoh answers from its own memory.
 
         Args:
             seconds: the longest wait.

@@ -1,4 +1,7 @@
-"""Join a graph to others over Zenoh, if it is installed, which is checked without the import."""
+"""Joins a graph to others over Zenoh, if Zenoh is installed.
+
+This is checked without importing it.
+"""
 
 from __future__ import annotations
 
@@ -20,12 +23,12 @@ if TYPE_CHECKING:
 
 
 def is_installed() -> bool:
-    """Return whether the packages are installed."""
+    """Return whether the packages that Zenoh needs are installed."""
     return find_spec("zenoh") is not None and find_spec("xxhash") is not None
 
 
 def unavailable_reason(environment: Mapping[str, str] | None = None) -> Phrase:
-    """Return the reason why this process does not use Zenoh; empty if it does.
+    """Return the reason why this process does not use Zenoh; empty if it uses Zenoh.
 
     Args:
         environment: the environment variables; those of this process if omitted.
@@ -44,5 +47,8 @@ def unavailable_reason(environment: Mapping[str, str] | None = None) -> Phrase:
 
 
 def join(graph: Graph, **options: Unpack[JoinOptions]) -> ZenohTransport | None:
-    """Connect a graph to other processes over Zenoh; return None if that is not possible."""
+    """Connect a graph to other processes over Zenoh.
+
+    Returns the transport; None if Zenoh is not available, or its settings are wrong.
+    """
     return join_with(graph, "zenoh", read_settings, ZenohTransport, unavailable_reason, options)

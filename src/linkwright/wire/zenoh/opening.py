@@ -1,4 +1,4 @@
-"""Open a session that waits for its router or peers, log the reasons for the wait, and allow it to be interrupted."""
+"""Opens a session, waiting for its router or peers, with log messages, until interrupted."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ _LOGGED_AGAIN_AFTER = 10.0
 
 
 class SessionOpener:
-    """Opens sessions, retrying for as long as their configuration allows or until `given_up` is set.
+    """Opens sessions, with retries for as long as the configuration allows.
 
-    Zenoh can wait itself, but then it cannot be interrupted and reports nothing.
+    Zenoh itself could wait, but that wait cannot be interrupted and reports nothing.
 
     Args:
         logger: logs the reason for a wait.
-        given_up: set when the session is no longer needed.
+        given_up: an event that ends the wait; set when the session is no longer needed.
     """
 
     def __init__(self, logger: Logger, given_up: threading.Event) -> None:
@@ -43,7 +43,8 @@ class SessionOpener:
         """Open a session.
 
         Raises:
-            LinkwrightError: DDS112, it cannot be opened, no process was reached in time, or waiting was interrupted.
+            LinkwrightError: DDS112, the session cannot be opened, no process was reached in time, or `given_up` was
+                set.
         """
         seconds = _wait_seconds(config)
         if seconds == 0:
@@ -76,8 +77,8 @@ class ObstacleReporter:
 
     Args:
         config: the configuration of the session.
-        log: called from a thread with the reasons.
-        linked: returns whether there is currently nothing to report.
+        log: called from the thread with the reasons.
+        linked: returns whether the session is connected, so that there is nothing to report.
     """
 
     def __init__(
@@ -90,11 +91,11 @@ class ObstacleReporter:
         self._thread = threading.Thread(target=self._run, name="linkwright-zenoh-waits", daemon=True)
 
     def start(self) -> None:
-        """Start the thread."""
+        """Start the reporting thread."""
         self._thread.start()
 
     def end(self) -> None:
-        """Stop reporting; the thread ends a moment later if it is just trying to reach an address."""
+        """Stop reporting. If the thread is trying an address, it ends a moment later."""
         self._over.set()
 
     def _run(self) -> None:
@@ -113,7 +114,7 @@ class ObstacleReporter:
 
 
 def _try_open(config: zenoh.Config) -> zenoh.Session | zenoh.ZError:
-    """Open a session; return it, or the error that prevented it."""
+    """Try to open a session; return the session, or the error."""
     try:
         return zenoh.open(config)
     except zenoh.ZError as error:

@@ -1,7 +1,7 @@
-"""Encode quality of service as one chunk of a liveliness token.
+"""Encodes QoS profiles as one chunk of a liveliness token.
 
-The form is ``<reliability>:<durability>:<history>,<depth>:<deadline>:<lifespan>:<liveliness>,<lease>`` with times in
-seconds and nanoseconds; values that are the default of rmw_zenoh_cpp are left empty.
+The form is ``<reliability>:<durability>:<history>,<depth>:<deadline>:<lifespan>:<liveliness>,<lease>``. Times consist
+of seconds and nanoseconds. Values that are the default of rmw_zenoh_cpp are left empty.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ _DEFAULT_DEPTH = 42
 
 
 def write(profile: QoSProfile) -> str:
-    """Return the chunk for a profile."""
+    """Return the chunk that encodes a profile."""
     qos = resolved(profile)
-    # A depth that is left to the middleware becomes the default.
+    # If the depth is left to the middleware, it becomes the default.
     keeps_all = qos.history is HistoryPolicy.KEEP_ALL
     depth = _DEFAULT_DEPTH if profile.depth == 0 else profile.depth
     reliability = "" if qos.reliability is ReliabilityPolicy.RELIABLE else str(int(qos.reliability))
@@ -43,7 +43,7 @@ def write(profile: QoSProfile) -> str:
 
 
 def read(text: str) -> QoSProfile:
-    """Return the profile for a chunk.
+    """Return the profile that a chunk encodes.
 
     Raises:
         ValueError: the text is not a profile.

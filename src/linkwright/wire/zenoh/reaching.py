@@ -1,6 +1,6 @@
-"""Find the reasons why a connection to an address fails, which Zenoh itself does not report.
+"""Finds the reasons why a connection to an address fails, which Zenoh does not report.
 
-Like Zenoh, it connects to the address, as far as sockets and TLS are concerned.
+To do so, this module connects to the address with sockets and TLS in the same way as Zenoh.
 """
 
 from __future__ import annotations
@@ -27,14 +27,17 @@ _CALLED = ("tcp", "tls")
 
 
 def configured_addresses(config: zenoh.Config) -> list[str]:
-    """Return the addresses that a session with this configuration connects to."""
+    """Return the addresses that a session with the given configuration connects to."""
     addresses = mode_value(config, "connect/endpoints", default=[])
     flat = [address for group in addresses for address in (group if isinstance(group, list) else [group])]
     return [str(address) for address in flat]
 
 
 def mode_value(config: zenoh.Config, key: str, *, default: Any) -> Any:
-    """Return the value of a setting that may differ by mode, such as ``{client: 0, peer: -1}``."""
+    """Return the value of a setting for the session's mode; `default` if it is not set.
+
+    The setting may differ by mode, such as ``{client: 0, peer: -1}``.
+    """
     value = json.loads(config.get_json(key))
     if isinstance(value, dict):
         value = value.get(json.loads(config.get_json("mode")) or "peer")
@@ -51,7 +54,7 @@ def obstacles(config: zenoh.Config) -> list[Phrase]:
 
 
 def obstacle(address: str, tls: Mapping[str, Any]) -> Phrase:
-    """Return the reason why a connection to an address fails; empty if none is found.
+    """Return the reason why a connection to an address fails; empty if no reason is found.
 
     Args:
         address: the address, such as ``tls/cloud.example.com:7448``.
@@ -88,7 +91,10 @@ def obstacle(address: str, tls: Mapping[str, Any]) -> Phrase:
 
 
 def _protocol_obstacle(address: str, called: socket.socket) -> Phrase:
-    """Send a first Zenoh message; return a reason if the listener answers with TLS, otherwise an empty phrase."""
+    """Send a first Zenoh message; return a reason if the listener answers with TLS.
+
+    Otherwise the phrase is empty.
+    """
     called.settimeout(_PATIENCE / 4)
     try:
         called.sendall(b"\x04\0\x01\x08\0\0")
@@ -110,7 +116,7 @@ def _tls_obstacle(address: str, called: socket.socket, host: str, tls: Mapping[s
     ):
         return Phrase("")
     context = ssl.create_default_context()
-    context.verify_flags &= ~ssl.VERIFY_X509_STRICT  # Python sets this flag from 3.13 on, but Zenoh does not require it
+    context.verify_flags &= ~ssl.VERIFY_X509_STRICT  # Python sets this flag from 3.13 on; Zenoh's TLS is less strict.
     context.check_hostname = tls.get("verify_name_on_connect") is not False
     authority, certificate, key = (
         tls.get(setting) or "" for setting in ("root_ca_certificate", "connect_certificate", "connect_private_key")
@@ -139,7 +145,7 @@ def _tls_obstacle(address: str, called: socket.socket, host: str, tls: Mapping[s
         with context.wrap_socket(called, server_hostname=host) as secured:
             is_agreed = True
             secured.settimeout(_PATIENCE / 2)
-            secured.recv(1)  # with TLS 1.3, a client learns only after the handshake that it was refused
+            secured.recv(1)  # With TLS 1.3, a client learns of a refusal only after the handshake.
     except TimeoutError:
         return Phrase("") if is_agreed else _no_tls(address)
     except ssl.SSLCertVerificationError as error:

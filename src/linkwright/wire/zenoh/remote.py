@@ -17,7 +17,7 @@ _GONE_FOR = 0.5
 
 
 class RemoteGraph(Outside):
-    """The nodes and endpoints of other sessions; see `Outside` for the threads that write and read them."""
+    """The nodes and endpoints of other sessions; for thread safety see `Outside`."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -26,12 +26,12 @@ class RemoteGraph(Outside):
         self._counts: Counter[tuple[EndpointKind, str]] = Counter()
         self._gone: dict[str, float] = {}
 
-    # --- from discovery ----------------------------------------------------------------------------------------------
+    # --- called by discovery -----------------------------------------------------------------------------------------
 
     def add(self, key: str, token: Token) -> bool:
         """Record a token under its key expression; return whether it is new.
 
-        Newer distributions may have appended chunks to the key expression.
+        The key expression may have additional chunks, from newer distributions.
         """
         with self._lock:
             if key in self._tokens:
@@ -42,18 +42,20 @@ class RemoteGraph(Outside):
         return True
 
     def has_just_gone(self, key: str) -> bool:
-        """Return whether a token disappeared a moment ago, so that news that it is alive is outdated.
+        """Return whether a token disappeared a moment ago.
 
-        If a session requests tokens that it already knows, Zenoh answers in a separate task, and the news of a token's
-        end may overtake the answer. A token that reappears after a broken connection takes longer.
+        A report that such a token is alive is outdated.
+
+        If a session requests tokens that it already knows, Zenoh answers in a separate task, and the report of a
+        token's end may overtake the answer. A token that reappears after a broken connection takes longer.
         """
         return key in self._gone and time.monotonic() - self._gone[key] < _GONE_FOR
 
     def remove(self, key: str) -> Token | None:
-        """Remove a token and return it; None if it was not known."""
+        """Remove a token and return it; None if the token was not known."""
         now = time.monotonic()
         for old in [gone_key for gone_key in islice(self._gone, 2) if now - self._gone[gone_key] > _GONE_FOR]:
-            del self._gone[old]  # removes up to the two oldest per call: few remain
+            del self._gone[old]  # two per call at most, which suffices to keep few
         self._gone.pop(key, None)
         self._gone[key] = now
         with self._lock:
@@ -66,7 +68,7 @@ class RemoteGraph(Outside):
         return token
 
     def forget_endpoints(self, kind: EndpointKind, data_key: str) -> None:
-        """Remove the endpoints of a kind at a key whose tokens are no longer subscribed to."""
+        """Remove the endpoints of a kind at a key, whose tokens are no longer subscribed to."""
         with self._lock:
             gone = [key for key, token in self._tokens.items() if (token.kind, token.data_key) == (kind, data_key)]
             for key in gone:
@@ -74,7 +76,7 @@ class RemoteGraph(Outside):
             self._counts.pop((kind, data_key), None)
 
     def forget_nodes(self, full_name: str) -> None:
-        """Remove the tokens of all nodes with this full name, after unsubscribing from those tokens."""
+        """Remove the tokens of all nodes with a full name, which are no longer subscribed to."""
         with self._lock:
             for key in [key for key, token in self._tokens.items() if token.kind is None]:
                 if self._tokens[key].node.full_name == full_name:
@@ -83,7 +85,7 @@ class RemoteGraph(Outside):
     # --- queries of the transport ------------------------------------------------------------------------------------
 
     def count(self, kind: EndpointKind, data_key: str) -> int:
-        """Return the number of endpoints of a kind at a key."""
+        """Return the number of known endpoints of a kind at a key."""
         return self._counts[kind, data_key]
 
     def has_endpoints(self, node_key: tuple[str, str]) -> bool:
@@ -92,11 +94,11 @@ class RemoteGraph(Outside):
             return any(token.kind is not None and token.node_key == node_key for token in self._tokens.values())
 
     def has_token(self, key: str) -> bool:
-        """Return whether a token exists."""
+        """Return whether a token with this key expression is known."""
         return key in self._tokens
 
     def sessions(self, kind: EndpointKind | None = None) -> set[str]:
-        """Return the known sessions, or those that have endpoints of a kind."""
+        """Return the ids of the known sessions, or of those that have endpoints of a kind."""
         with self._lock:
             return {token.session for token in self._tokens.values() if kind is None or token.kind is kind}
 

@@ -29,11 +29,13 @@ _WAITS_FOR_RESULT = 30 * 24 * 3600.0
 
 
 class OutsideServer:
-    """The servers of other processes, as a client of this process calls them (`graph.endpoints.client.OutsideService`).
+    """The servers of other processes, as a client of this process calls them.
+
+    Implements `linkwright.graph.endpoints.service.OutsideService`.
 
     Args:
         client: the client.
-        token: its token.
+        token: the client's token.
         session: the session.
         changed: called, from any thread, when a server appears or leaves.
     """
@@ -77,7 +79,7 @@ class OutsideServer:
             self._client.set_outside(self if is_ready else None)
 
     def close(self) -> None:
-        """Withdraw the client; pending requests stay unanswered."""
+        """Withdraw the client. Pending requests stay unanswered."""
         self._client.set_outside(None)
         self._answers.clear()
         self._listener.undeclare()
@@ -88,7 +90,7 @@ class OutsideServer:
         self._client.outside = None
 
     def _receive(self, number: int, reply: zenoh.Reply) -> None:
-        """Pass on the first reply, in a thread of Zenoh."""
+        """Pass on the first reply to a request. Called in a thread of Zenoh."""
         sample = reply.ok
         if sample is None:
             return
@@ -97,7 +99,10 @@ class OutsideServer:
             forward_response(sample.payload.to_bytes(), self._client, answer)
 
     def _end(self, number: int) -> None:
-        """Log, once, that a request has ended without a reply; its future stays pending, as in rclpy."""
+        """Handle the end of a request. A request without a reply is logged once per client.
+
+        The future of such a request stays pending, as in rclpy.
+        """
         if self._answers.pop(number, None) is not None and not self._warned and not self._client.destroyed:
             self._warned = True
             self._client.node.logger.warning(
@@ -114,7 +119,7 @@ class IncomingService:
 
     Args:
         service: the service.
-        token: its token.
+        token: the service's token.
         session: the session.
     """
 
@@ -133,17 +138,17 @@ class IncomingService:
         self._lock = Lock()
 
     def close(self) -> None:
-        """Stop answering other processes; waiting clients are notified that no reply will come."""
+        """Stop answering other processes, and notify clients that wait for a reply."""
         self._queryable.undeclare()
         with self._lock:
-            self._closed = True  # a thread of Zenoh may be about to deliver a request
+            self._closed = True  # A thread of Zenoh may be about to deliver a request.
             questions = list(self._open)
             self._open.clear()
         for question in questions:
             question.drop()
 
     def _receive(self, query: zenoh.Query) -> None:
-        """Pass a request to the service, in a thread of Zenoh."""
+        """Pass a request to the service. Called in a thread of Zenoh."""
         about = attachment.read(None if query.attachment is None else query.attachment.to_bytes())
         body = None if query.payload is None else query.payload.to_bytes()
         if about is None or body is None:
@@ -162,7 +167,7 @@ class IncomingService:
 
     def _reply(self, question: _PendingRequest, response: Any) -> None:
         with self._lock:
-            if question not in self._open:  # it was dropped, or has already been answered
+            if question not in self._open:  # already dropped or answered
                 return
             self._open.discard(question)
         question.answer(response, self.token.data_key)
@@ -172,7 +177,7 @@ class _PendingRequest:
     """A request that waits for its reply.
 
     Args:
-        query: Zenoh's query; the client waits until it is dropped.
+        query: Zenoh's query; while it exists, the client waits.
         about: the attachment of the query.
     """
 
@@ -187,5 +192,5 @@ class _PendingRequest:
         self._query.drop()
 
     def drop(self) -> None:
-        """Notify the client that no reply will come."""
+        """Drop the query, which notifies the client that no reply will follow."""
         self._query.drop()

@@ -1,4 +1,4 @@
-"""Open a Zenoh session with the settings of the environment."""
+"""Opens a Zenoh session with the settings of the environment."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def open_with(config: zenoh.Config) -> zenoh.Session:
     """Open a session with a configuration.
 
     Raises:
-        LinkwrightError: DDS112, it cannot be opened.
+        LinkwrightError: DDS112, the session cannot be opened.
     """
     try:
         return zenoh.open(config)
@@ -36,12 +36,12 @@ def close_session(session: zenoh.Session) -> None:
     """Close a session, in the background if that takes long.
 
     Zenoh waits without a limit for connections whose buffers are full. This function returns after `_CLOSING_LIMIT` at
-    the latest; then the process can end.
+    the latest, so that the process can end.
     """
     closing = threading.Thread(target=session.close, name="linkwright-zenoh-close", daemon=True)
     try:
         closing.start()
-    except RuntimeError:  # Python is shutting down and starts no more threads
+    except RuntimeError:  # Python is shutting down and starts no more threads.
         session.close()
     else:
         closing.join(_CLOSING_LIMIT)
@@ -61,12 +61,12 @@ def session_error(error: zenoh.ZError, config: zenoh.Config) -> LinkwrightError:
 
 
 def could_not_connect(error: zenoh.ZError) -> bool:
-    """Return whether a session could not be opened because none of its addresses was reached."""
+    """Return whether a session could not be opened because no address could be reached."""
     return _NOT_CONNECTED in str(error)
 
 
 def is_client(settings: Settings) -> bool:
-    """Return whether the settings make a session a client of a router.
+    """Return whether a session with the given settings is a client of a router.
 
     Raises:
         LinkwrightError: DDS111, the configuration is refused.
@@ -75,13 +75,16 @@ def is_client(settings: Settings) -> bool:
 
 
 def listening_at(config: zenoh.Config) -> list[str]:
-    """Return the addresses that a configuration listens at, if they are the same for all session modes."""
+    """Return the addresses at which sessions with a configuration listen.
+
+    The list is empty if the addresses differ between session modes.
+    """
     addresses = json.loads(config.get_json("listen/endpoints"))
     return [str(address) for address in addresses] if isinstance(addresses, list) else []
 
 
 def configuration(settings: Settings) -> zenoh.Config:
-    """Return the Zenoh configuration for the settings.
+    """Return the Zenoh configuration that follows from the settings.
 
     Raises:
         LinkwrightError: DDS111, the configuration is refused.

@@ -1,4 +1,4 @@
-"""The settings of Zenoh from the environment: the domain, the configuration of the session, the wait for a router.
+"""The settings of Zenoh from the environment: domain, configuration, wait for a router.
 
 The variables are those of rmw_zenoh_cpp. By default a session is configured as in rmw_zenoh_cpp, and also finds
 Linkwright's sessions on this machine if no router is running (`docs/decisions/0066-zenoh.md`).
@@ -65,7 +65,7 @@ class Settings:
         file: the configuration file that replaces our own configuration; empty for none.
         own: our own configuration.
         overrides: entries that are applied last, to either configuration.
-        attempts: how many times to look for a router, a second apart, before continuing; None for no limit.
+        attempts: the number of checks for a router, a second apart, before continuing without one; None for no limit.
         hashes: whether types have a hash on the wire; in Humble they have none.
     """
 
@@ -82,7 +82,7 @@ def read_settings(environment: Mapping[str, str] | None = None, *, domain_id: in
 
     Args:
         environment: the variables; those of this process if omitted.
-        domain_id: takes precedence over ROS_DOMAIN_ID.
+        domain_id: the domain, which takes precedence over ROS_DOMAIN_ID; None for ROS_DOMAIN_ID.
 
     Raises:
         LinkwrightError: DDS101, the domain is not valid; DDS111, a variable is malformed.
@@ -112,7 +112,7 @@ def read_router_settings(environment: Mapping[str, str] | None = None) -> Settin
 def _session(domain_id: int) -> Entries:
     """Return the configuration of a peer that communicates only on this machine.
 
-    It announces itself by multicast that never leaves the machine, at an address for its domain.
+    The peer announces itself by multicast that never leaves the machine, at an address for its domain.
     """
     loopback = _LOOPBACK.get(sys.platform, "auto")
     return (
@@ -156,7 +156,10 @@ def _overrides(variables: Mapping[str, str]) -> Entries:
 
 
 def _attempts(variables: Mapping[str, str]) -> int | None:
-    """Return how often to look for a router: by default never, unlike rmw_zenoh_cpp."""
+    """Return the number of checks for a router; None for no limit.
+
+    The default is 0, unlike in rmw_zenoh_cpp.
+    """
     text = variables.get(ATTEMPTS, "").strip()
     if not text:
         return 0

@@ -1,8 +1,8 @@
-"""The keys of data, and the liveliness tokens that announce nodes and endpoints, as rmw_zenoh_cpp writes them.
+"""Data keys, and liveliness tokens that announce nodes and endpoints, as in rmw_zenoh_cpp.
 
 The data of a topic or service has the key ``<domain>/<name>/<type>/<hash>``. A token is
-``@ros2_lv/<domain>/<session>/<node's id>/<id>/<kind>/<enclave>/<namespace>/<node>``, followed for an endpoint by
-``<name>/<type>/<hash>/<QoS>``; a slash within a chunk becomes ``%``.
+``@ros2_lv/<domain>/<session>/<node's id>/<id>/<kind>/<enclave>/<namespace>/<node>``. For an endpoint,
+``<name>/<type>/<hash>/<QoS>`` follows. A slash within a chunk becomes ``%``.
 """
 
 from __future__ import annotations
@@ -43,15 +43,15 @@ class Token:
 
     Attributes:
         domain_id: the ROS domain.
-        session: the id of its Zenoh session.
-        node_id: the id of its node in the session.
-        entity_id: its own id; for a node, equal to `node_id`.
-        node: its node.
+        session: the id of the Zenoh session.
+        node_id: the id of the node in the session.
+        entity_id: the id of the node or endpoint; for a node, equal to `node_id`.
+        node: the node, or the endpoint's node.
         kind: the kind of the endpoint; None for a node.
         name: the absolute ROS name of the topic or service.
-        type_name: the type as on the wire, ``std_msgs::msg::dds_::String_``.
+        type_name: the name of the type on the wire, such as ``std_msgs::msg::dds_::String_``.
         type_hash: ``RIHS01_...``, or `NO_HASH`.
-        qos: the QoS as on the wire, see `qos_text`.
+        qos: the QoS as encoded on the wire, see `qos_text`.
     """
 
     domain_id: int
@@ -78,7 +78,7 @@ class Token:
 
     @cached_property
     def data_key(self) -> str:
-        """The key of the data of its topic or service."""
+        """The data key of the endpoint's topic or service."""
         return data_key(self.domain_id, self.name, self.type_name, self.type_hash)
 
     @cached_property
@@ -90,11 +90,11 @@ class Token:
 
     @property
     def node_key(self) -> tuple[str, str]:
-        """The key shared by a node and its endpoints."""
+        """The ids of the session and of the node in it, which a node and its endpoints share."""
         return self.session, self.node_id
 
     def described(self) -> EndpointInfo | None:
-        """Return its description in ROS terms; None for nodes, and for endpoints outside ROS."""
+        """Return the endpoint's description in ROS terms; None for nodes and non-ROS endpoints."""
         type_name = ros_type(self.type_name)
         if self.kind is None or type_name is None:
             return None
@@ -112,18 +112,21 @@ def data_key(domain_id: int, name: str, type_name: str, type_hash: str) -> str:
 
 
 def node_token_pattern(domain_id: int, node: NodeIdentity) -> str:
-    """Return the key expression that matches the tokens of nodes with a name."""
+    """Return the key expression that matches the tokens of all nodes with a full name."""
     return f"{ROOT}/{domain_id}/*/*/*/{_NODE}/*/{_chunk(node.namespace)}/{node.name}"
 
 
 def peer_token_pattern(token: Token, kind: EndpointKind) -> str:
-    """Return the key expression that matches the tokens of endpoints of another kind at the same key."""
+    """Return the key expression that matches the tokens of matching endpoints of the given kind.
+
+    Matching endpoints have the same data key.
+    """
     about = (_chunk(token.name), _chunk(token.type_name), _chunk(token.type_hash))
     return "/".join((ROOT, str(token.domain_id), "*/*/*", _MARKS[kind], "*/*/*", *about, "**"))
 
 
 def read(key: str) -> Token | None:
-    """Parse a key expression into a token; return None if it does not have the form of a ROS token."""
+    """Parse a key expression into a token; return None if it is not that of a ROS token."""
     chunks = key.split("/")
     if len(chunks) < _NODE_CHUNKS or chunks[0] != ROOT or not chunks[1].isdecimal():
         return None
@@ -143,7 +146,10 @@ def read(key: str) -> Token | None:
 
 @lru_cache(maxsize=1024)
 def _is_profile(text: str) -> bool:
-    """Return whether a chunk is a profile; cached, because a graph has many endpoints but few different profiles."""
+    """Return whether a chunk is a QoS profile.
+
+    The result is cached, because a graph has many endpoints but few different profiles.
+    """
     try:
         qos_text.read(text)
     except ValueError:

@@ -34,9 +34,9 @@ class OutgoingTopic:
 
     Args:
         publisher: the publisher.
-        token: its token.
+        token: the publisher's token.
         session: the session.
-        changed: called, from any thread, when it gains its first subscription or loses its last one.
+        changed: called, from any thread, when the publisher gains its first subscription or loses its last one.
     """
 
     def __init__(
@@ -67,12 +67,13 @@ class OutgoingTopic:
             )
         else:
             self._zenoh = session.declare_publisher(token.data_key, **options)
-            # Called by a thread of Zenoh. With Zenoh's own handlers, each listener would have a Python thread.
+            # A thread of Zenoh calls this directly. With Zenoh's own handlers, each listener would have a Python
+            # thread.
             self._listener = self._zenoh.declare_matching_listener(Callback(lambda _: changed(), indirect=False))
         self._send: Callable[[Any], None] | None = self._sender()
 
     def review(self, count: int) -> None:
-        """Enable sending while there is a subscription, or one may join late.
+        """Enable sending while there is a subscription, or while late joiners must be served.
 
         Args:
             count: the number of known remote subscriptions.
@@ -84,9 +85,9 @@ class OutgoingTopic:
     def close(self) -> None:
         """Withdraw the publisher.
 
-        A publisher that keeps messages is dropped without `undeclare`, which withdraws it too. Its `undeclare` would
-        hold the GIL for up to 10 s while waiting for a thread of Zenoh that may itself be waiting for the GIL in a
-        callback.
+        A publisher that stores messages for late joiners is dropped without `undeclare`, which withdraws it as well.
+        Its `undeclare` would hold the GIL for up to 10 s while waiting for a thread of Zenoh that may itself be
+        waiting for the GIL in a callback.
         """
         self.abandon()
         if self._listener is not None:
@@ -104,7 +105,7 @@ class OutgoingTopic:
 
         def send(message: Any) -> None:
             data = message if type(message) is bytes else _bytes_of(message)
-            with lock:  # keeps messages in the order of their numbers: a gap counts as a loss
+            with lock:  # Messages must be sent in the order of their numbers, because a gap counts as a loss.
                 put(data, attachment=write(next(numbers), now(), gid))
 
         return send
@@ -115,10 +116,10 @@ class IncomingTopic:
 
     Args:
         subscription: the subscription.
-        token: its token.
+        token: the subscription's token.
         session: the session.
-        key: the key to listen to; the token's own key, or an expression that includes it.
-        own: the gids of this session's publishers, which deliver to it inside the process.
+        key: the key to subscribe to: the token's data key, or an expression that includes it.
+        own: the gids of this session's publishers, which deliver to the subscription inside the process.
     """
 
     def __init__(
@@ -147,16 +148,16 @@ class IncomingTopic:
             self._zenoh = session.declare_subscriber(key, handler, allowed_origin=zenoh.Locality.REMOTE)
 
     def review(self, count: int) -> None:
-        """Record the number of known remote publishers."""
+        """Update the number of known remote publishers."""
         self._subscription.set_outside_count(count)
-        self._subscription.set_outside_liveliness(count, 0)  # Zenoh does not report publishers that are not alive
+        self._subscription.set_outside_liveliness(count, 0)  # Zenoh reports only live publishers
 
     def close(self) -> None:
         """Withdraw the subscription."""
         self._zenoh.undeclare()
 
     def _receive(self, sample: zenoh.Sample) -> None:
-        """Pass on a sample, in a thread of Zenoh."""
+        """Pass a sample to the subscription. Called in a thread of Zenoh."""
         enclosed = sample.attachment
         about = attachment.read(None if enclosed is None else enclosed.to_bytes())
         if about is None:
@@ -185,7 +186,10 @@ class IncomingTopic:
 
 
 def _sent(_seconds: float | None) -> bool:
-    """Return True: Zenoh has reliable connections and no acknowledgements, so a message passed to it counts as sent."""
+    """Return True, because a message that was passed to Zenoh counts as sent.
+
+    Zenoh has reliable connections and no acknowledgements.
+    """
     return True
 
 

@@ -1,4 +1,4 @@
-"""The Zenoh transport: mirrors the graph of this process in a Zenoh session, as rmw_zenoh_cpp does."""
+"""The Zenoh transport, which mirrors the graph of this process as rmw_zenoh_cpp does."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _ALONE_AFTER = 1.4
 
 
 class ZenohTransport(BackgroundTransport):
-    """The graph of this process in a Zenoh session.
+    """Mirrors the graph of this process in a Zenoh session.
 
     Args:
         settings: the domain and how to join it.
@@ -54,7 +54,10 @@ class ZenohTransport(BackgroundTransport):
         super().__init__(settings.domain_id, self._remote, self._departures, logger, **options)
 
     def look_around(self) -> None:
-        """Discover the remote graph; until then, a client of a router receives only what its own endpoints need."""
+        """Discover the whole remote graph.
+
+        Before this call, a client of a router receives only the tokens that its own endpoints need.
+        """
         engine = self._zenoh_engine
         waits = engine is not None and self._decided.is_set() and not engine.runs_this
         with self._looking:
@@ -65,7 +68,7 @@ class ZenohTransport(BackgroundTransport):
             return
         answered = Event()
         self._do(lambda engine: cast("ZenohEngine", engine).look_around(_ANSWERED_WITHIN, answered.set))
-        if waits:  # otherwise the remote graph arrives as it changes
+        if waits:  # if not waiting, the remote graph arrives step by step
             self._wait_for_answer(answered)
             self._do(self._note_news)
             self._looked.wait(_ANSWERED_WITHIN)
@@ -77,7 +80,10 @@ class ZenohTransport(BackgroundTransport):
         return self._patience is not None and self._patience.waits
 
     def _wait_for_answer(self, answered: Event) -> None:
-        """Wait for the answer, and until no further part of it arrives, because some parts may be late."""
+        """Wait for the answer to a request for tokens, and until no more tokens arrive.
+
+        Some tokens may arrive late.
+        """
         answered.wait(_ANSWERED_WITHIN)
         begin = time.monotonic()
         while time.monotonic() < min(begin + _ANSWERED_WITHIN, max(self._remote.changed_at, begin) + _QUIET):

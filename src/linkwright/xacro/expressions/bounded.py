@@ -1,8 +1,8 @@
-"""Limited versions of Python functions, a single call of which could take hours.
+"""Limited versions of Python functions whose calls could otherwise take hours.
 
-An expression pays for its work step by step, and the clock is read between two steps. However, nothing can end a
-single call of a function that is written in C. Therefore, each function that can be slow for some arguments is
-listed here with a limit: keys with equal hashes, searches from the right, texts stripped of many characters,
+An expression is charged for each step of its work, and the clock is read between two steps. However, a single call of
+a function that is written in C cannot be interrupted. Therefore, each function that can be slow for some arguments
+is listed here with a limit: keys with equal hashes, searches from the right, texts stripped of many characters,
 codecs, and numbers with many bits.
 """
 
@@ -43,12 +43,12 @@ HASHING = frozenset(
 
 
 def checked_keys(value: Any) -> Any:
-    """Return the value from which a set or dict can be built.
+    """Return a value from which a set or dict can safely be built.
 
-    This is the given value, or a list of its items if it is an iterator.
+    The result is the given value or, for an iterator, a list of its items.
 
     Raises:
-        RefusalError: if too many of its items, or of the first items of its pairs, have the same hash.
+        RefusalError: if too many of the items, or of the first items of its pairs, have the same hash.
     """
     if isinstance(value, (str, bytes, dict, set, frozenset, range)) or not hasattr(value, "__iter__"):
         return value
@@ -60,7 +60,7 @@ def checked_keys(value: Any) -> Any:
 
 
 def check_keys(items: Collection[Any]) -> None:
-    """Check that keys do not include too many with the same hash.
+    """Check that not too many different keys have the same hash.
 
     Raises:
         RefusalError: if more than a thousand different keys have the same hash.
@@ -77,7 +77,7 @@ def check_keys(items: Collection[Any]) -> None:
 def _hash_of(item: Any) -> int:
     try:
         return hash(item)
-    except TypeError:  # a list is not a valid key, and is refused later
+    except TypeError:  # an unhashable item, such as a list, is refused later
         return id(item)
 
 
@@ -106,11 +106,11 @@ def _stripped(name: str) -> Callable[..., Any]:
 
 
 def check_codec(value: Any, encoding: str) -> None:
-    """Check that a long value is not encoded or decoded with a codec of quadratic running time.
+    """Check that a value is not too long for a codec of quadratic running time.
 
     Raises:
-        RefusalError: if it is too long.
-        LookupError: if there is no such codec; this includes non-ASCII names, for which Python 3.15 warns.
+        RefusalError: if the value is too long for the codec.
+        LookupError: if there is no such codec. Non-ASCII names are included, because Python 3.15 warns about them.
     """
     if isinstance(encoding, str) and not encoding.isascii():
         raise LookupError(f"unknown encoding: {encoding}")
@@ -164,7 +164,7 @@ MATHEMATICS: dict[str, Any] = {
 }
 """Functions of ``math`` that are bounded."""
 
-# Not compiled here: few files need them.
+# These patterns are not compiled here because few files need them.
 _CLASS_BEGINS = r"\[\^?\]?"
 _WRITTEN = r"(?s)\\.|\]"
 
@@ -174,12 +174,12 @@ def split(pattern: str, text: str) -> list[str]:
 
     Args:
         pattern: the regular expression, which begins with ``[`` and ends with ``]``, as ros/xacro composes it. If
-            another ``]`` ends the class earlier, it can be any expression.
+            another ``]`` ends the class earlier, the pattern can be any regular expression.
         text: the text to split.
 
     Raises:
-        re.error: if the pattern is not a regular expression.
-        RefusalError: if it takes too long.
+        re.error: if the pattern is not a valid regular expression.
+        RefusalError: if the split takes too long.
     """
     begins = re.match(_CLASS_BEGINS, pattern)
     written = re.compile(_WRITTEN).finditer(pattern, begins.end() if begins else 0)

@@ -1,13 +1,13 @@
-"""Compiler from the syntax tree of an expression to nested closures.
+"""The compiler from the syntax tree of an expression to nested closures.
 
 There is one method for each kind of node that expressions may use. Nodes of any other kind are refused. A closure
-takes the environment and returns the value of its node. Its operations on values are performed by the sandbox.
-Every closure that can fail knows its place in the text, which makes the columns in messages exact.
+takes the environment and returns the value of its node. The sandbox performs the operations on values. Every closure
+that can fail stores its position in the text, so that the columns in messages are exact.
 """
 
 from __future__ import annotations
 
-import _ast as ast  # only the nodes: the rest of ast takes long to import
+import _ast as ast  # _ast only has the node classes, whereas the import of ast is slow
 import operator
 import re
 from collections.abc import Callable, Iterator
@@ -31,7 +31,7 @@ _CHANGING = frozenset(
     }
 )
 
-_WITH_UNIT = r"\s*([-+]?[0-9.]+)\s*[^\W\d]+\s*"  # not compiled here: few files need it
+_WITH_UNIT = r"\s*([-+]?[0-9.]+)\s*[^\W\d]+\s*"  # not compiled here because few files need it
 _GENERATOR = 10
 """Steps that making a generator costs, for its memory."""
 _LINES = r"[^\r\n]*(?:\r\n?|\n|\Z)"
@@ -103,8 +103,8 @@ class Compiler:
     """A compiler for the nodes of one expression.
 
     Args:
-        source: the text that was parsed.
-        shift: the number of characters before it in the text that contains it.
+        source: the text of the expression.
+        shift: the number of characters before the expression in the enclosing text.
 
     Attributes:
         changes: whether a compiled node may change a value.
@@ -133,12 +133,12 @@ class Compiler:
         self._depth -= 1
         return closure
 
-    # places and failures
+    # locations and failures
 
     def _place(self, node: Any) -> tuple[int, int]:
         start, end = node.col_offset, node.end_col_offset
         if not self._is_plain:
-            lines = re.findall(_LINES, self._source)  # columns count UTF-8 bytes
+            lines = re.findall(_LINES, self._source)  # the columns of ast nodes count UTF-8 bytes
             start, end = (
                 sum(map(len, lines[: number - 1]))
                 + len(lines[number - 1].encode("utf-8", "replace")[:column].decode("utf-8", "replace"))
@@ -158,9 +158,9 @@ class Compiler:
         return Fault("XAC204", message, start, end)
 
     def _operand_hint(self, error: Exception, *operands: tuple[ast.expr, Any]) -> Phrase | None:
-        """Return a hint on the unsuitable operand, such as a zero, a text, or a number with a unit.
+        """Return a hint on the unsuitable operand, or None.
 
-        Constants get no hint.
+        Such an operand is a zero, a text, or a number with a unit. Constants get no hint.
         """
         for node, value in operands:
             written = self._segment(*self._place(node))
@@ -187,7 +187,7 @@ class Compiler:
     # names and constants
 
     def name(self, name: str, start: int) -> Closure:
-        """Return the closure for a name at an offset of the source."""
+        """Return the closure for a name at an offset in the source."""
         place = (start + self._shift, start + self._shift + len(name))
         if name.startswith("__"):
             raise Fault("XAC204", phrase("the name '{name}' is not allowed in an expression", name=name), *place)
@@ -210,7 +210,7 @@ class Compiler:
     def _joinedstr(self, node: ast.JoinedStr) -> Closure:
         from ast import copy_location, walk
 
-        for part in walk(node):  # before Python 3.12, the positions inside an f-string are not those in the text
+        for part in walk(node):  # before Python 3.12, nodes inside an f-string do not have their position in the text
             if isinstance(part, ast.expr):
                 copy_location(part, node)
         parts = [self.compile(part) for part in node.values]
@@ -321,7 +321,7 @@ class Compiler:
         test, then, otherwise = self.compile(node.test), self.compile(node.body), self.compile(node.orelse)
         return lambda env: then(env) if test(env) else otherwise(env)
 
-    # access to members of values
+    # attributes and items of values
 
     def _attribute(self, node: ast.Attribute) -> Closure:
         value, name = self.compile(node.value), node.attr
@@ -416,7 +416,7 @@ class Compiler:
         body = self.compile(node.body)
         return lambda env: Function(parameters(env), body, env)
 
-    # displays
+    # lists, tuples, sets and dicts
 
     def _list(self, node: ast.List) -> Closure:
         return self._display(node, list)
@@ -501,7 +501,7 @@ class Compiler:
         return generator
 
     def _turns(self, generators: list[ast.comprehension]) -> Callable[[Environment], Iterator[Environment]]:
-        """Return the loops of a comprehension, as a function that yields the environment of each iteration."""
+        """Return a function that yields the environment of each iteration of a comprehension."""
         loops = []
         for generator in generators:
             if generator.is_async:

@@ -1,12 +1,12 @@
-"""Expressions: the part of Python that ``${...}`` may contain.
+"""Expressions: the subset of Python that ``${...}`` may contain.
 
-An expression is parsed by Python itself and turned, once for each text, into nested closures (see `compiler`), so
-nothing is ever passed to Python's own ``eval``.
+Python itself parses an expression. The syntax tree is turned, once for each text, into nested closures (see
+`compiler`), so no text is ever passed to Python's ``eval``.
 """
 
 from __future__ import annotations
 
-import _ast as ast  # only the nodes: the rest of ast takes long to import
+import _ast as ast  # _ast only has the node classes, whereas the import of ast is slow
 import re
 from types import GeneratorType
 
@@ -20,7 +20,7 @@ from linkwright.xacro.faults import Fault
 _LONGEST = 20_000
 _ITERATORS = frozenset({GeneratorType, enumerate, filter, map, reversed, zip})
 """Iterators, which become lists at once: nested thousands deep, they would overflow the stack."""
-_WARNS = r"\\|\d\.?[^\W\d]"  # not compiled here: few files need it
+_WARNS = r"\\|\d\.?[^\W\d]"  # not compiled here because few files need it
 _CLOSING = {"(": ")", "[": "]"}
 _HINTS = (
     ("{", phrase("'}' ends the expression, so there is no way to write a dict or set in it; load one from YAML")),
@@ -37,9 +37,9 @@ class Expression:
 
     Attributes:
         source: the text of the expression.
-        evaluate: the function that returns its value in a scope, or raises a `Fault`, whose offsets are relative to the
-            source.
-        changes: whether evaluating it may change a value, as ``items.pop(0)`` does.
+        evaluate: the function that returns the value of the expression in a scope. It raises a `Fault` whose offsets
+            are relative to the source.
+        changes: whether the evaluation may change a value, as ``items.pop(0)`` does.
     """
 
     __slots__ = ("changes", "evaluate", "source")
@@ -73,19 +73,19 @@ def compile_expression(source: str) -> Expression:
     """Return the compiled form of an expression, which is cached by source.
 
     Raises:
-        Fault: XAC102 or XAC204 if it is malformed or forbidden.
+        Fault: XAC102 or XAC204 if the expression is malformed or forbidden.
     """
     return expressions.get(source) or _compiler.make(source)
 
 
 def _run_through(closure: Closure, source: str) -> Closure:
-    """Return a closure that evaluates the items of an iterator immediately, not on demand."""
+    """Return a closure that evaluates all items of an iterator immediately instead of on demand."""
 
     def evaluate(scope: Scope) -> Any:
         try:
             value = closure(scope)
             return iter(list(value)) if value.__class__ in _ITERATORS else value
-        except FAILURES as error:  # an error during iteration, such as in a generator
+        except FAILURES as error:  # an error during the iteration, such as in a generator
             raise failure(error, source.strip(), 0, len(source)) from None
 
     return evaluate
@@ -94,7 +94,7 @@ def _run_through(closure: Closure, source: str) -> Closure:
 def is_identifier(name: str) -> bool:
     """Return whether a name is valid for a property: a Python identifier that is not a keyword.
 
-    If Python treats letters as equal, such as a ligature and its letters, only the plain form is valid.
+    If Python treats two forms of a name as equal, such as a ligature and its letters, only the plain form is valid.
     """
     if not name.isascii():
         from unicodedata import normalize

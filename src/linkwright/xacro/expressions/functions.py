@@ -1,12 +1,12 @@
-"""Functions of expressions: lambdas, calls, and the steps that a call costs.
+"""Functions in expressions: lambdas, calls, and the number of steps that a call costs.
 
-A function costs as much as the number of items that it visits. Python's own functions process a long list much
-faster than an expression could, but not for free, and an expression may call them without limit.
+A function costs steps in proportion to the number of items that it visits. Python's own functions process a long list
+much faster than an expression could, but not for free, and an expression may call them any number of times.
 """
 
 from __future__ import annotations
 
-import _ast as ast  # only the nodes: the rest of ast takes long to import
+import _ast as ast  # _ast only has the node classes, whereas the import of ast is slow
 from collections.abc import Callable
 
 from linkwright.diagnostics import phrase
@@ -26,11 +26,11 @@ class Parameters(NamedTuple):
 
     Attributes:
         positional: the names of the positional parameters.
-        positional_only: how many of these are positional-only.
+        positional_only: the number of names in `positional` that are positional-only.
         keyword_only: the names of the keyword-only parameters.
         rest: the name of the parameter for all further positional arguments, or None.
         keywords: the name of the parameter for all further keyword arguments, or None.
-        defaults: the values of optional parameters.
+        defaults: the default values of optional parameters, by name.
     """
 
     positional: tuple[str, ...]
@@ -41,7 +41,7 @@ class Parameters(NamedTuple):
     defaults: dict[str, Any]
 
     def bound(self, arguments: tuple[Any, ...], named: dict[str, Any]) -> dict[str, Any]:
-        """Return the value of each parameter for a call.
+        """Return the values of the parameters in a call, by name.
 
         Raises:
             TypeError: if the arguments do not match the parameters.
@@ -105,7 +105,10 @@ class Function:
 def bind_parameters(
     arguments: ast.arguments, compile_node: Callable[[ast.AST], _Closure]
 ) -> Callable[[Environment], Parameters]:
-    """Compile the parameters of a lambda; the defaults are evaluated together with the lambda."""
+    """Return a function that evaluates the parameters of a lambda, including their defaults.
+
+    As in Python, the defaults are evaluated when the lambda is created.
+    """
     positional = tuple(argument.arg for argument in (*arguments.posonlyargs, *arguments.args))
     keyword_only = tuple(argument.arg for argument in arguments.kwonlyargs)
     defaults = {
@@ -144,16 +147,19 @@ _QUICK = frozenset(
 
 
 def cost(value: Any) -> int:
-    """Return the number of steps that one pass over a value costs; the contents of its items do not count."""
+    """Return the number of steps that one pass over a value costs.
+
+    The contents of the items do not count.
+    """
     share = _SHARES.get(value.__class__)
     return len(value) // share if share else 0
 
 
 def call(budget: Budget, function: Any, arguments: list[Any], keywords: dict[str, Any]) -> Any:
-    """Return the value of a function for some arguments.
+    """Call a function with some arguments, charge the budget, and return the value.
 
     Raises:
-        RefusalError: if the function may not be called, or its value is too large.
+        RefusalError: if the function must not be called, or if its value is too large.
         Fault: XAC603 if there were too many steps.
     """
     sandbox.check_call(function)
@@ -182,7 +188,7 @@ def charged(budget: Budget, value: Any) -> Any:
     """Charge the budget for a new value with all its items, and return the value.
 
     Raises:
-        RefusalError: if it is too large.
+        RefusalError: if the value is too large.
         Fault: XAC603 if there were too many steps.
     """
     weight = sandbox.weight(value)
@@ -192,7 +198,10 @@ def charged(budget: Budget, value: Any) -> Any:
 
 
 def _metered(budget: Budget, function: Any) -> Any:
-    """Return a function that charges the budget when Python functions call it, as lambdas already do."""
+    """Return a function that charges the budget each time one of Python's functions calls it.
+
+    Lambdas are returned unchanged, because they charge the budget themselves.
+    """
     if not callable(function) or isinstance(function, Function):
         return function
 

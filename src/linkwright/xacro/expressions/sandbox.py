@@ -1,8 +1,8 @@
-"""The sandbox of expressions: the operations that they may apply to values.
+"""The sandbox of expressions: the operations that expressions may apply to values.
 
-Expressions come from untrusted files. Therefore, the sandbox does not list forbidden names but allowed ones, and
-everything else is refused. An attribute is accessible only if it is listed for its type. A type can be called only
-if it is listed. No value may exceed the limits below.
+Expressions come from untrusted files. Therefore, the sandbox lists what is allowed and refuses everything else. An
+attribute is accessible only if it is listed for the type of the value. A type can be called only if it is listed. No
+value may exceed the limits below.
 """
 
 from __future__ import annotations
@@ -81,11 +81,11 @@ CALLABLE_TYPES = frozenset(
 
 
 def attribute(value: Any, name: str) -> Any:
-    """Return ``value.name`` if it is allowed.
+    """Return ``value.name`` if expressions may access it.
 
     Raises:
-        AttributeError: if there is no such attribute.
-        RefusalError: if there is one that expressions may not access.
+        AttributeError: if the value has no such attribute.
+        RefusalError: if the attribute exists, but expressions must not access it.
     """
     kind = value.__class__
     if kind is Module:
@@ -135,29 +135,29 @@ def contains(container: Any, item: Any) -> bool:
 
 
 def check_call(function: Any) -> None:
-    """Check that a function is not a type that expressions may not call.
+    """Check that a function is not a type that expressions must not call.
 
     Raises:
-        RefusalError: if expressions may not create values of this type.
+        RefusalError: if expressions must not create values of this type.
     """
     if isinstance(function, type) and function not in CALLABLE_TYPES:
         raise RefusalError(phrase("'{name}' cannot be called in expressions", name=function.__name__))
 
 
 def check_size(value: Any) -> Any:
-    """Return a value if it is not too large.
+    """Return a value unchanged if it is not too large.
 
     Raises:
-        RefusalError: if a string, list or number exceeds the limits; nested lists count with their whole content.
+        RefusalError: if a string, list or number exceeds the limits. Nested lists count with their whole content.
     """
     weight(value)
     return value
 
 
 def weight(value: Any) -> int:
-    """Return the number of items or characters in a value, nested ones included.
+    """Return the number of items or characters in a value, including nested ones.
 
-    For a number, this is the number of machine words.
+    For a number, the result is the number of machine words.
 
     Raises:
         RefusalError: if a string, list or number exceeds the limits.
@@ -179,10 +179,10 @@ def weight(value: Any) -> int:
 
 
 def joined(parts: list[str]) -> str:
-    """Return the concatenation of the parts.
+    """Return the concatenation of some strings.
 
     Raises:
-        RefusalError: if it would be too long.
+        RefusalError: if the result would be too long.
     """
     length = sum(map(len, parts))
     if length > MAX_LENGTH:
@@ -191,10 +191,10 @@ def joined(parts: list[str]) -> str:
 
 
 def as_text(value: Any) -> str:
-    """Return ``str(value)``, the text that the expansion writes.
+    """Return ``str(value)``, which is the text that the expansion writes.
 
     Raises:
-        RefusalError: if it would be too long.
+        RefusalError: if the text would be too long.
     """
     if value.__class__ is str:
         return value
@@ -272,7 +272,7 @@ def shift_left(value: Any, by: Any) -> Any:
     return value << by
 
 
-_FORMAT = r"%(?:\([^)]*\))?[-+ #0]*(\*|\d+)?(?:\.(\*|\d+))?"  # not compiled here: few files need it
+_FORMAT = r"%(?:\([^)]*\))?[-+ #0]*(\*|\d+)?(?:\.(\*|\d+))?"  # not compiled here because few files need it
 
 
 def modulo(left: Any, right: Any) -> Any:
@@ -301,12 +301,12 @@ def formatted(value: Any, conversion: int, specification: str) -> str:
 
     Args:
         value: the value of the field.
-        conversion: the code of the letter after the exclamation mark; -1 if there is none.
+        conversion: the character code of the letter after the exclamation mark, or -1 if there is none.
         specification: the format specification after the colon.
 
     Raises:
         RefusalError: if the text would be too long.
-        TypeError: if values of this kind do not support a format specification.
+        TypeError: if values of this type do not support a format specification.
     """
     check_size(value)
     if conversion in _CONVERSIONS:
@@ -344,7 +344,7 @@ OPERATORS: dict[str, Callable[[Any, Any], Any]] = {
 
 
 class _Bound:
-    """A guarded method of a value."""
+    """A method of a value that is replaced by a guarded function."""
 
     __slots__ = ("__self__", "_method")
 

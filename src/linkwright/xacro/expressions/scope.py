@@ -1,10 +1,9 @@
-"""The lookup of names in expressions, and the conversion of their texts to values.
+"""The lookup of names in expressions, and the conversion of texts to values.
 
-Scopes form a chain. A macro call opens one whose parent is the caller's (dynamic scoping, as in ros/xacro), an
-include with a namespace opens a `Namespace`, and the outermost one contains the names that the language provides.
+Scopes form a chain. A macro call opens a scope whose parent is the caller's scope (dynamic scoping, as in ros/xacro).
+An include with a namespace opens a `Namespace`. The outermost scope contains the names that the language provides.
 
-Strings that look like numbers or booleans are converted to such values, and some texts count as true.
-
+Strings that look like numbers or booleans are converted to such values, and conditions accept some strings as true.
 Both rules are those of ros/xacro, on which real robots rely: ``007`` is 7 and ``true`` is True, but ``TRUE``,
 ``0x10`` and ``1_000`` are strings.
 """
@@ -26,7 +25,7 @@ _BOOLEANS = {"true": True, "True": True, "false": False, "False": False}
 
 
 def literal(value: Any) -> Any:
-    """Return the value of a string that may be a number or a boolean; any other value unchanged.
+    """Return the number or boolean that a string represents, or else the value itself.
 
     Single quotes around a string are removed, and prevent its conversion.
     """
@@ -41,7 +40,7 @@ def literal(value: Any) -> Any:
 
 @lru_cache(maxsize=4096)
 def number_or_boolean(text: str) -> Any:
-    """Return the value of a text that is a number or a boolean, or else the text."""
+    """Return the number or boolean that a text represents, or else the text."""
     if "." not in text:
         try:
             return int(text)
@@ -56,7 +55,7 @@ def number_or_boolean(text: str) -> Any:
 def truth(value: Any) -> bool:
     """Return the truth value of a condition.
 
-    A string must be ``true``, ``True``, ``false``, ``False`` or an integer; other values have Python's truth value.
+    A string must be ``true``, ``True``, ``false``, ``False`` or an integer. Other values have Python's truth value.
 
     Raises:
         ValueError: if the value is any other string.
@@ -68,16 +67,16 @@ def truth(value: Any) -> bool:
 
 
 class Context(Protocol):
-    """The interface of an expansion that evaluation needs; a `Session` implements it.
+    """The interface of an expansion that the evaluation uses; a `Session` implements it.
 
     Attributes:
-        arguments: name -> value of every argument passed or declared so far.
-        limits: the bounds of the expansion.
+        arguments: the value of every argument passed or declared so far, by name.
+        limits: the limits of the expansion.
         budget: the remaining budget.
         file: the file being processed.
         place: the element or text being processed.
         attribute: the attribute of `place` that is being evaluated, or None.
-        resolving: the nested properties being evaluated, outermost first.
+        resolving: the names of the nested properties being evaluated, outermost first.
     """
 
     arguments: dict[str, str]
@@ -90,15 +89,18 @@ class Context(Protocol):
 
     @property
     def working_directory(self) -> str:
-        """The working directory, for ``$(cwd)``."""
+        """The working directory, which is the value of ``$(cwd)``."""
         ...
 
     def evaluate(self, text: str, scope: Scope) -> Any:
-        """Return the value of a text in a scope; raises a `Fault` if it has none."""
+        """Return the value of a text in a scope; raises a `Fault` if the evaluation fails."""
         ...
 
     def warn(self, code: str, message: Phrase, span: Span | None = None, hint: Phrase | None = None) -> object:
-        """Record a finding that does not stop the expansion; without a span, at the text being evaluated."""
+        """Record a finding that does not stop the expansion.
+
+        The default of `span` is the location of the text being evaluated.
+        """
         ...
 
     def argument(self, name: str) -> str:
@@ -106,7 +108,7 @@ class Context(Protocol):
         ...
 
     def package(self, name: str) -> str:
-        """Return the share folder of a package; raises a `Fault` if there is no such package."""
+        """Return the share folder of a package; raises a `Fault` if the package is not found."""
         ...
 
     def undefined(self, name: str, environment: Environment, start: int, end: int) -> Fault:
@@ -114,12 +116,12 @@ class Context(Protocol):
         ...
 
     def nearest_attribute(self, owner: Any, name: str) -> Phrase | None:
-        """Return a hint for an attribute name that a value does not have, or None."""
+        """Return a hint with a similar name for an attribute that a value does not have, or None."""
         ...
 
 
 class Lazy:
-    """A property that is not yet evaluated: its text, and the place of the text."""
+    """The text of a property that is not yet evaluated, and the location of the text."""
 
     __slots__ = ("attribute", "element", "resolving", "text")
 
@@ -141,11 +143,11 @@ class Scope:
         self.values: dict[str, Any] = {} if values is None else values
 
     def lookup(self, name: str) -> Any:
-        """Return the value of a name, which is evaluated at the first lookup.
+        """Return the value of a name; a lazy property is evaluated at its first lookup.
 
         Raises:
             KeyError: if no scope of the chain defines the name.
-            Fault: if its evaluation fails.
+            Fault: if the evaluation fails.
         """
         scope: Scope | None = self
         while scope is not None:
@@ -167,20 +169,20 @@ class Scope:
     def define(
         self, name: str, value: Any, *, lazy: bool = False, element: Element | None = None, attribute: str = "value"
     ) -> None:
-        """Assign a value to a name in this scope, applying the literal rule.
+        """Define a name in this scope, converting its value by the literal rule (see `literal`).
 
         Args:
             name: the name.
-            value: the value; a string is subject to the literal rule.
-            lazy: whether a string is evaluated only at its first lookup.
+            value: the value; a string is converted by the literal rule.
+            lazy: whether a string is evaluated only at the first lookup of the name.
             element: the element that contains the text, for messages.
-            attribute: the attribute of this element that contains the text.
+            attribute: the attribute of the element that contains the text.
         """
         plain = literal(value)
         if lazy and isinstance(plain, str):
             if "$" in plain:
                 plain = Lazy(plain, element, attribute)
-            elif plain is not value:  # it was quoted
+            elif plain is not value:  # the string was quoted
                 plain = literal(plain)
         self.values[name] = plain
 
@@ -189,36 +191,36 @@ class Scope:
         self.define(name, value, lazy=True)
 
     def bind(self, name: str, value: Any) -> None:
-        """Assign a value to a name without converting it."""
+        """Assign a value to a name in this scope without converting the value."""
         self.values[name] = value
 
     def inner(self) -> Local:
-        """Return the environment of a lambda or comprehension in an expression that is evaluated here."""
+        """Return the environment of a lambda or comprehension that is evaluated in this scope."""
         return Local(self, {})
 
     def remove(self, name: str) -> None:
-        """Remove a name from every scope of the chain except the outermost."""
+        """Remove a name from every scope of the chain except the outermost one."""
         scope = self
         while scope.parent is not None:
             scope.values.pop(name, None)
             scope = scope.parent
 
     def document_scope(self) -> Scope:
-        """Return the scope of the document, which is just inside the outermost scope."""
+        """Return the scope of the document, which is directly inside the outermost scope."""
         scope = self
         while scope.parent is not None and scope.parent.parent is not None:
             scope = scope.parent
         return scope
 
     def names(self) -> Iterator[str]:
-        """Yield all names that are visible here, except blocks, for suggestions."""
+        """Yield all names that are visible in this scope, except blocks, for suggestions."""
         scope: Scope | None = self
         while scope is not None:
             yield from (name for name in scope.values if not name.startswith("*"))
             scope = scope.parent
 
     def blocks(self) -> Iterator[str]:
-        """Yield the names of all blocks that are visible here, with their asterisks."""
+        """Yield the names of all blocks that are visible in this scope, with their asterisks."""
         scope: Scope | None = self
         while scope is not None:
             yield from (name for name in scope.values if name.startswith("*"))
@@ -264,7 +266,7 @@ class Namespace(Scope):
 
 
 class Local:
-    """The variables of a lambda or comprehension, with the enclosing environment."""
+    """The environment of a lambda or comprehension: variables and the enclosing environment."""
 
     __slots__ = ("_around", "_values", "session")
 
@@ -274,7 +276,7 @@ class Local:
         self.session: Context = around.session
 
     def lookup(self, name: str) -> Any:
-        """Return the value of a name; see `Scope.lookup`."""
+        """Return the value of a name in this or an enclosing environment; see `Scope.lookup`."""
         if name in self._values:
             return self._values[name]
         return self._around.lookup(name)
@@ -288,15 +290,15 @@ class Local:
         self._around.assign(name, value)
 
     def inner(self) -> Local:
-        """Return the environment of a lambda or comprehension inside this one."""
+        """Return the environment of a lambda or comprehension inside this environment."""
         return Local(self, {})
 
     def blocks(self) -> Iterator[str]:
-        """Yield the names of all blocks that are visible here; see `Scope.blocks`."""
+        """Yield the names of all blocks that are visible in this environment; see `Scope.blocks`."""
         return self._around.blocks()
 
     def names(self) -> Iterator[str]:
-        """Yield all names that are visible here."""
+        """Yield all names that are visible in this environment."""
         yield from self._values
         yield from self._around.names()
 

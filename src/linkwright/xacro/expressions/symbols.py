@@ -1,7 +1,7 @@
 """The names that the language provides to expressions.
 
 They are the same as in ros/xacro: a few of Python's functions, all of ``math``, and the groups ``math``, ``python``
-and ``xacro``. Functions that could create very large values, or reach objects that expressions may not see, are
+and ``xacro``. Functions that could create very large values, or access objects that expressions must not access, are
 guarded.
 """
 
@@ -126,7 +126,7 @@ _PYTHON_NAMES: dict[str, Any] = {name: _GUARDED.get(name, getattr(builtins, name
 
 
 def tokenize(text: str, sep: str = ",; ", skip_empty: bool = True) -> list[str]:
-    """Split a text at any of some separator characters."""
+    """Return the parts of a text between any of some separator characters."""
     inside = re.sub(r"(?<!\\)([\[\]])", r"\\\1", sep)
     try:
         parts = bounded.split(f"[{inside}]", text)
@@ -142,14 +142,14 @@ def _fatal(*words: Any) -> None:
 
 
 class Provider(Protocol):
-    """The part of a `Session` that the functions of ``xacro`` need."""
+    """The part of a `Session` that the functions of the group ``xacro`` need."""
 
     def load_yaml(self, name: str) -> Any:
         """Return the value of a YAML file."""
         ...
 
     def absolute(self, name: str) -> str:
-        """Return a file name relative to the file being processed, with that file's folder prepended."""
+        """Return a relative file name with the folder of the file being processed prepended."""
         ...
 
     def dotify(self, mapping: Any = (), **items: Any) -> Any:
@@ -161,7 +161,7 @@ class Provider(Protocol):
         ...
 
     def reporter(self, name: str, code: str, severity: Severity) -> Callable[..., str]:
-        """Create ``xacro.message``, ``xacro.warning`` or ``xacro.error``, which show a message to the user."""
+        """Return the function that shows messages: ``xacro.message``, ``warning`` or ``error``."""
         ...
 
     def deprecated(self, better: str, function: Callable[..., Any]) -> Callable[..., Any]:
@@ -170,7 +170,7 @@ class Provider(Protocol):
 
 
 def global_names(session: Provider) -> dict[str, Any]:
-    """Return the names in the outermost scope of one expansion."""
+    """Return the names in the outermost scope of one expansion, with their values."""
     functions: dict[str, Any] = {
         "load_yaml": session.load_yaml,
         "abs_filename": session.absolute,

@@ -1,18 +1,19 @@
-"""Texts with ``${...}`` and ``$(...)``, compiled once for each text and evaluated in any scope.
+"""Texts with ``${...}`` and ``$(...)``, compiled once and evaluated in any scope.
 
-A text that is exactly one token keeps the type of its value, such as a float or a list. Any other result is joined
-to a string. The result is not evaluated again.
+If a text is exactly one token, its value keeps its type, such as a float or a list. Otherwise, the values of the
+tokens are joined to a string. The result is not evaluated again.
 
-The lexer splits a text with ``${expressions}`` and ``$(substitutions)``.
+The lexer splits a text into ``${expressions}``, ``$(substitutions)`` and literal text. It tries the rules of
+ros/xacro in this order at each position:
 
-The rules are those of ros/xacro, tried in this order at each place: two or more dollars before a brace or
-parenthesis lose one of them and make it literal; ``${`` extends to the first ``}``; ``$(`` extends to the first
-``)``; anything else is text, which may contain single dollars.
+- Two or more dollars before a brace or parenthesis lose one of them and make the bracket literal.
+- ``${`` extends to the first ``}``.
+- ``$(`` extends to the first ``)``.
+- Anything else is literal text, which may contain single dollars.
 
-Substitution arguments are ``$(arg name)``, ``$(find package)`` and similar commands.
-
-The text between the parentheses is split at blanks into a command and its arguments. Each ``$(find ...)`` in the
-result is evaluated, too, so that the value of an argument may contain one.
+Substitutions are ``$(arg name)``, ``$(find package)`` and similar commands. The text between the parentheses is split
+at blanks into a command and its arguments. Each ``$(find ...)`` in the result is evaluated, too, so that the value of
+an argument may contain one.
 """
 
 from __future__ import annotations
@@ -40,14 +41,14 @@ _NO_DIRECTORY = phrase("ros/xacro knows the command 'dirname', but it always fai
 _INSTEAD_OF_DIRECTORY = phrase(
     "write $(find PACKAGE)/FOLDER, or ${xacro.abs_filename('FILE')} for a file beside this one"
 )
-_REFERENCE = r"\$\(([^()$]+)\)"  # not compiled here: few files need it
+_REFERENCE = r"\$\(([^()$]+)\)"  # not compiled here because few files need it
 
 
 def substitute(body: str, session: Context) -> str:
     """Return the value of ``$(body)``.
 
     Raises:
-        Fault: if the command is unknown, lacks its arguments, or finds nothing; the offsets are relative to the body.
+        Fault: if the command is unknown, lacks arguments, or finds nothing. The offsets are relative to the body.
     """
     if not body:
         return "$()"
@@ -138,11 +139,14 @@ def _optional_variable(words: list[str], _session: Context) -> str:
 
 
 def _environment(name: str) -> str | None:
-    """Return an environment variable; those that every ROS installation sets are always available."""
+    """Return the value of an environment variable, or None if it is not set.
+
+    Variables that every ROS installation sets have a default value.
+    """
     value = os.environ.get(name)
     if value is not None:
         return value
-    from linkwright.packages.ament import ROS_VARIABLES  # few robots need the packages room for this
+    from linkwright.packages.ament import ROS_VARIABLES  # imported here because few robots need it
 
     return ROS_VARIABLES.get(name)
 
@@ -214,8 +218,8 @@ class Token(NamedTuple):
     Attributes:
         kind: the kind of the token.
         text: the text that a TEXT token yields; for other kinds, the text between the brackets.
-        start: the offset of its first character.
-        end: the offset after its last character.
+        start: the offset of the token's first character.
+        end: the offset after the token's last character.
     """
 
     kind: TokenKind
@@ -229,7 +233,7 @@ _PIECE = r"""(?x)
   | \$\{(?P<expression>[^}]*)\}
   | \$\((?P<substitution>[^)]*)\)
   | (?P<text>[^$]+|\$[^{($]+|\$\Z)
-    """  # not compiled here: the texts of a small file seldom need it
+    """  # not compiled here because small files seldom need it
 
 _KINDS = {
     "escaped": TokenKind.TEXT,
@@ -246,7 +250,7 @@ def tokenize(text: str) -> list[Token]:
         Fault: XAC101 for a bracket that is never closed or a dollar sign without a meaning.
     """
     if text.startswith("${") and text.find("}") == len(text) - 1:
-        return [Token(TokenKind.EXPRESSION, text[2:-1], 0, len(text))]  # the form of most texts with a dollar
+        return [Token(TokenKind.EXPRESSION, text[2:-1], 0, len(text))]  # the usual form of a text with a dollar
     pattern = re.compile(_PIECE)
     tokens: list[Token] = []
     at = 0
@@ -285,9 +289,9 @@ class Template:
     """A compiled text.
 
     Attributes:
-        evaluate: the function that returns the value of the text in a scope, or raises a `Fault`, whose offsets are
+        evaluate: the function that returns the value of the text in a scope. It raises a `Fault` whose offsets are
             relative to the text.
-        changes: whether evaluating it may change a value, as ``${items.pop(0)}`` does.
+        changes: whether the evaluation may change a value, as ``${items.pop(0)}`` does.
     """
 
     __slots__ = ("changes", "evaluate")
@@ -314,13 +318,13 @@ class Template:
         return _placed(expression.evaluate, start, end)
 
     def _nested(self, token: Token) -> _Part:
-        """Return the part for a token whose content is itself a text.
+        """Return the part for a token whose content contains other tokens.
 
-        That text is evaluated first, and its value is the source of the token.
+        The content is evaluated first, and its value is the source of the token.
         """
         kind, text, start, end = token
         inner = _placed(compile_template(text).evaluate, start, end)
-        self.changes = True  # unknown before it is evaluated
+        self.changes = True  # the source, and so its effects, are not known before the evaluation
 
         def part(scope: Scope) -> Any:
             source = _as_text(inner(scope))
@@ -341,7 +345,7 @@ templates = _compiler.forms
 
 
 def compile_template(text: str) -> Template:
-    """Return the template of a text; templates are cached by text.
+    """Return the compiled form of a text, which is cached by text.
 
     Raises:
         Fault: XAC101 or XAC102 if the text is malformed.
@@ -361,9 +365,9 @@ def _placed(evaluate: _Part, start: int, end: int) -> _Part:
 
 
 def _joined(texts: list[str], parts: list[_Part | None]) -> _Part:
-    """Return a function that evaluates the parts of a text and joins them.
+    """Return a function that evaluates the parts of a text and joins their values to a string.
 
-    Where there is no part, it uses the text itself.
+    Where a part is None, the text at the same index is used.
     """
     evaluated = [(place, part) for place, part in enumerate(parts) if part is not None]
 

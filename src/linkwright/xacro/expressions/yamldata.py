@@ -1,7 +1,8 @@
 """YAML files as values of expressions.
 
-PyYAML's safe loader reads them, so the language is YAML 1.1: ``yes`` is True, ``012`` is ten, ``1e3`` is a string.
-Six tags turn an expression with a unit into metres or radians. PyYAML is imported when a file is first read.
+PyYAML's safe loader reads the files, so the language is YAML 1.1: ``yes`` is True, ``012`` is ten, ``1e3`` is a
+string. Six tags convert an expression with a unit to metres or radians. PyYAML is imported when the first file is
+read.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ UNITS = {
 
 
 class YamlMapping(dict[Any, Any]):
-    """A mapping inside YAML data, which is a plain dict in ros/xacro, without access by a dot."""
+    """A mapping inside YAML data without access by a dot, since ros/xacro uses a plain dict."""
 
     __slots__ = ()
 
@@ -33,7 +34,7 @@ class YamlMapping(dict[Any, Any]):
 class YamlDict(dict[Any, Any]):
     """A mapping whose items are also accessible with a dot.
 
-    As in ros/xacro, a nested mapping or list gets this access when it is read, as a copy: a loop that empties
+    As in ros/xacro, reading a nested mapping or list returns a copy with this access, so a loop that empties
     ``data.joints`` leaves ``data`` unchanged. Methods such as ``get`` or ``values`` return the original items.
     """
 
@@ -67,14 +68,17 @@ COPIED: frozenset[type] = frozenset({YamlDict, YamlList})
 
 
 def wrapped(value: Any) -> Any:
-    """Return a value of YAML data in the form that expressions access."""
+    """Return a value of YAML data in the form that expressions use."""
     if isinstance(value, dict):
         return YamlDict(value)
     return YamlList(value) if isinstance(value, list) else value
 
 
 class YamlError(Exception):
-    """Raised for a file that is not YAML; line and column start at 1 and are 0 if they are not known."""
+    """Raised for a file that is not valid YAML.
+
+    The line and the column start at 1, and are 0 if they are not known.
+    """
 
     def __init__(self, message: str, line: int = 0, column: int = 0) -> None:
         super().__init__(message)
@@ -128,7 +132,7 @@ def _load(text: str, evaluate: Callable[[str], Any] | None) -> Any:
 
 
 def dotted(value: Any) -> Any:
-    """Return a deep copy of a value in the form that expressions access."""
+    """Return a deep copy of a value whose mappings are accessible with a dot."""
     return wrapped(_copied(value, {}))
 
 
@@ -152,10 +156,13 @@ def _copied(value: Any, seen: dict[int, Any]) -> Any:
 
 
 def _unit_loader(base: type, evaluate: Callable[[str], Any]) -> Any:
-    """Return a new loader class that knows units; each file needs one, as it evaluates in its expansion."""
+    """Return a new loader class that evaluates unit tags.
+
+    Each file needs its own class, because the expressions are evaluated in the expansion of the file.
+    """
 
     class UnitLoader(base):  # type: ignore[misc]
-        """The safe loader with additional support for units."""
+        """The safe loader with support for unit tags."""
 
     def with_unit(loader: Any, tag: str, node: Any) -> float:
         return float(evaluate(loader.construct_scalar(node))) * UNITS[f"!{tag}"]

@@ -1,7 +1,7 @@
-"""Conversion of YAML nodes with the usual content to values: mappings and lists of scalars.
+"""The conversion of common YAML nodes to values: mappings and lists of scalars.
 
-PyYAML's own conversion is equivalent but needs a dozen calls for each value. It still handles the rare cases: merge
-keys, keys that are not scalars, dates, and tags.
+PyYAML's own conversion has the same results but needs a dozen calls for each value. PyYAML still converts the rare
+cases: merge keys, keys that are not scalars, dates, and tags.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ tags: dict[str, str] = {}
 class NodeLoader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[misc]
     """The safe loader with limits, which also records the tags of plain scalars.
 
-    Without the limits, a file of a few lines could fill the memory, or overflow the stack of libyaml's composer.
+    Without the limits, a file of a few lines could exhaust the memory, or overflow the stack of libyaml's composer.
     """
 
     depth = 0
@@ -45,7 +45,7 @@ class NodeLoader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore
         return tag
 
     def descend_resolver(self, node: Any, _index: Any) -> None:
-        """Count how deeply nodes are nested; tags do not depend on the path to a node."""
+        """Check the nesting depth of a node; the path to a node does not affect its tag."""
         self.depth += 1
         if self.depth > _DEEPEST:
             message = f"the values are nested more than {_DEEPEST} deep"
@@ -56,7 +56,10 @@ class NodeLoader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore
         self.depth -= 1
 
     def construct_yaml_int(self, node: Any) -> Any:
-        """Return an integer, counting those that may share a hash with others and make keys slow."""
+        """Return the integer of a node, and count integers whose hashes may collide.
+
+        Keys with colliding hashes make a mapping slow.
+        """
         if len(node.value) > _LONGEST_NUMBER:
             message = f"the number has more than {_LONGEST_NUMBER:,} characters"
             raise yaml.constructor.ConstructorError(None, None, message, node.start_mark)
@@ -81,14 +84,14 @@ NodeLoader.add_constructor(f"{_PREFIX}int", NodeLoader.construct_yaml_int)
 
 
 class _UnusualError(Exception):
-    """Raised for a node that is left to PyYAML."""
+    """Raised for a node that PyYAML must convert."""
 
 
 def construct(loader: Any, node: Any) -> Any:
     """Return the value of the root node of a document.
 
     Raises:
-        yaml.YAMLError: if it has none.
+        yaml.YAMLError: if the node has no value.
     """
     try:
         return _Construction(loader).value(node)
@@ -105,7 +108,7 @@ class _Construction:
             f"{_PREFIX}null": loader.construct_yaml_null,
         }
         self._begun: set[int] = set()
-        self._done: dict[int, Any] = {}  # node -> its value, shared by aliases
+        self._done: dict[int, Any] = {}  # the value of each node, which aliases share
 
     def value(self, node: Any) -> Any:
         tag = node.tag

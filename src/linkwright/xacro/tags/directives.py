@@ -1,4 +1,4 @@
-"""The xacro tags except macro calls, and their effects: arguments, properties, conditions, includes."""
+"""The xacro tags except macro calls: arguments, properties, conditions, includes and others."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _OF_PATTERNS = ("*", "[", "?")
 
 
 def include(expander: Expander, site: Site) -> None:
-    """Replace the tag with the content of a file, or of all files that match a pattern."""
+    """Expand ``<xacro:include>``: insert the content of one file, or of all matching files."""
     node, session = site.node, expander.session
     check_attributes(expander, node, ("filename",), ("ns", "optional"))
     scope, macros = _tables(expander, site)
@@ -143,13 +143,13 @@ _OPTIONAL = ("value", "default", "remove", "scope", "lazy_eval")
 
 
 def define_property(expander: Expander, site: Site) -> None:
-    """Define a property, or remove one."""
+    """Expand ``<xacro:property>``: define or remove a property."""
     node, scope = site.node, site.scope
     expander.sweep(site)
     check_attributes(expander, node, ("name",), _OPTIONAL)
     name = _name(expander, node, scope)
     attributes = node.attributes
-    if len(attributes) == 2 and "value" in attributes:  # the usual case
+    if len(attributes) == 2 and "value" in attributes:  # the usual case, without further attributes
         warn_of_global(expander, node, name, "name")
         scope.define(name, attributes["value"], lazy=True, element=node)
         return
@@ -209,9 +209,9 @@ def _flag(expander: Expander, node: Element, attribute: str, scope: Scope, *, de
 
 
 def _remove(expander: Expander, node: Element, name: str, scope: Scope) -> bool:
-    """Remove a value and return whether it existed.
+    """Remove a property from all scopes, and return whether it existed.
 
-    If it does not exist, the element defines a block with this name, as in ros/xacro.
+    If it did not exist, the caller must define a block with this name, as in ros/xacro.
     """
     span = node.attribute_span("name")
     if name not in scope:
@@ -226,7 +226,7 @@ def _remove(expander: Expander, node: Element, name: str, scope: Scope) -> bool:
 
 
 def _target(expander: Expander, node: Element, name: str, scope: Scope) -> tuple[Scope, bool]:
-    """Return the scope in which a property is defined, and whether it is the scope of its tag."""
+    """Return the scope in which a property is defined, and whether this is the scope of its tag."""
     where = node.attributes.get("scope")
     if where == "global":
         return scope.document_scope(), False
@@ -243,12 +243,12 @@ def _target(expander: Expander, node: Element, name: str, scope: Scope) -> tuple
     return target, False
 
 
-_NAME = r"[^\W\d][\w.\-]*(:[^\W\d][\w.\-]*)?"  # not compiled here: few files need it
+_NAME = r"[^\W\d][\w.\-]*(:[^\W\d][\w.\-]*)?"  # not compiled here because few files need it
 """A name in XML, nearly."""
 
 
 def declare_argument(expander: Expander, site: Site) -> None:
-    """Expand ``<xacro:arg name default/>``: give an argument a value, unless it has one."""
+    """Expand ``<xacro:arg name default/>``: give an argument its default unless it has a value."""
     node, session = site.node, expander.session
     check_attributes(expander, node, ("name", "default"), ())
     name = node.attributes["name"]
@@ -259,10 +259,10 @@ def declare_argument(expander: Expander, site: Site) -> None:
 
 
 def expand_condition(expander: Expander, site: Site) -> None:
-    """Expand ``<xacro:if value>`` or ``<xacro:unless value>``: keep the content, or drop it."""
+    """Expand ``<xacro:if value>`` or ``<xacro:unless value>``: insert or omit the content."""
     node, scope, session = site.node, site.scope, expander.session
     output = site.parent.children
-    waiting: list[Any] = []  # the marker is below the tag, unless a tag inside it moves it
+    waiting: list[Any] = []  # the marker stays below the tag, unless a tag inside moves it
     if expander.sweeper.sweep(output, followed=site.followed):
         expander.sweeper.mark(waiting)
     check_attributes(expander, node, ("value",), ())
@@ -279,7 +279,7 @@ def expand_condition(expander: Expander, site: Site) -> None:
         expander.fail_at("XAC305", message, node, node.attribute_span("value"), hint)
     if keep is (node.tag == "xacro:if"):
         if "$" in node.attributes["value"] and session.changes(node.attributes["value"]):
-            expander.attributes(node, scope)  # ros/xacro evaluates the attributes of kept elements a second time
+            expander.attributes(node, scope)  # ros/xacro evaluates the attributes of inserted elements a second time
         container = Container(node.tag)
         expander.children(node, container, scope, site.macros)
         expander.splice(container, site)
@@ -288,7 +288,7 @@ def expand_condition(expander: Expander, site: Site) -> None:
 
 
 def insert_block(expander: Expander, site: Site) -> None:
-    """Expand ``<xacro:insert_block name/>``: evaluate a block and insert it here."""
+    """Expand ``<xacro:insert_block name/>``: evaluate a block and insert the result."""
     node, scope = site.node, site.scope
     check_attributes(expander, node, ("name",), ())
     name = node.attributes["name"]
@@ -312,7 +312,7 @@ def insert_block(expander: Expander, site: Site) -> None:
 def expand_element(expander: Expander, site: Site) -> None:
     """Expand ``<xacro:element xacro:name>``: create an element whose tag is evaluated.
 
-    The resulting tag may be any tag.
+    The value of ``xacro:name`` may be any tag.
     """
     node = site.node
     if "xacro:name" not in node.attributes:
@@ -355,7 +355,10 @@ def set_attribute(expander: Expander, site: Site) -> None:
 
 
 def _warn_of_value(expander: Expander, site: Site, name: str, value: object) -> None:
-    """Warn about a value that is not text, until another one replaces it."""
+    """Warn about a value that is not text.
+
+    The warning is withdrawn if another value replaces this one.
+    """
     node = site.node
     kind = type(value).__name__
     message = (

@@ -1,4 +1,4 @@
-"""Definition and calls of macros."""
+"""Definitions and calls of macros."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def define_macro(expander: Expander, site: Site) -> None:
 
 
 def call_dynamically(expander: Expander, site: Site) -> None:
-    """Expand ``<xacro:call macro>``: call the macro whose name is in the attribute."""
+    """Expand ``<xacro:call macro>``: call the macro that the attribute names."""
     node = site.node
     if not node.attributes.get("macro"):
         expander.fail_at("XAC301", phrase("'xacro:call' lacks its attribute 'macro'"), node, node.span())
@@ -65,8 +65,8 @@ def call_macro(expander: Expander, site: Site) -> None:
 class _Call:
     """One call of a macro.
 
-    First the arguments and then the blocks are evaluated in the caller's scope. The defaults of missing arguments
-    follow. Finally, the body is expanded in a new scope.
+    First, the arguments and then the blocks are evaluated in the caller's scope. Then, missing arguments receive their
+    defaults. Finally, the body is expanded in a new scope.
     """
 
     def __init__(self, expander: Expander, site: Site, name: str, written_in: str | None) -> None:
@@ -133,7 +133,7 @@ class _Call:
     # binding the parameters
 
     def _bind_arguments(self, macro: Macro, scope: Scope) -> list[Parameter]:
-        """Bind the attributes of the call, and return the parameters that are not bound."""
+        """Bind the attributes of the call to parameters, and return the unbound parameters."""
         expander, node, caller = self._expander, self._node, self._site.scope
         attributes = node.attributes
         for name, text in attributes.items():
@@ -143,7 +143,7 @@ class _Call:
             warn_of_global(expander, node, name, name)
             scope.define(name, value)
         left = [parameter for parameter in macro.parameters if parameter.name not in attributes]
-        if len(macro.known) < len(macro.parameters):  # the second of two parameters with the same name gets no argument
+        if len(macro.known) < len(macro.parameters):  # of two parameters with one name, only the first is bound
             seen: set[str] = set()
             for parameter in macro.parameters:
                 if parameter.name in seen and parameter.name in attributes:

@@ -1,1 +1,1 @@
-"""Traced expansions, which yield the arguments, the provenance of elements and the log of properties."""
+"""Traced expansions, which yield arguments, provenance of elements, and the property log."""

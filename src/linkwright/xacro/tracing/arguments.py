@@ -1,9 +1,9 @@
-"""The arguments of a description, whether or not it can be expanded without them.
+"""The arguments of a description, found even if it cannot be expanded without them.
 
-The file is expanded with a session in which no argument is missing: a missing one gets the default that some file
-declares for it, or an empty text, and is recorded as required. All files that were read in this way are then
-searched, including branches not taken and macros not called. If the expansion did not finish, includes that it did
-not reach are followed if their names are known.
+The file is expanded with a session in which no argument is missing: a missing argument gets the default that some
+file declares, or else an empty text, and is recorded as required. All files that were read are then searched,
+including branches that were not taken and macros that were not called. If the expansion did not finish, the includes
+that it did not reach are read, too, as far as their names are known.
 """
 
 from __future__ import annotations
@@ -32,14 +32,14 @@ class Argument:
     """An argument of a description.
 
     Attributes:
-        name: its name.
-        default: its default as written, or None if the files do not declare one.
-        span: the place of its declaration, or of its first use if nothing declares it.
-        required: whether the description cannot be expanded without it. This is possible despite a default: the
-            attributes of the root are evaluated before any declaration.
-        used: whether any text uses it.
-        value: its value with the passed arguments, or None if it is not known.
-        given: whether it was passed.
+        name: the name of the argument.
+        default: the unevaluated default, or None if the files do not declare one.
+        span: the location of the declaration, or of the first use if no file declares the argument.
+        required: whether the description cannot be expanded without the argument. An argument may be required despite
+            its default, because the attributes of the root are evaluated before any declaration.
+        used: whether any text uses the argument.
+        value: the value with the passed arguments, or None if it is not known.
+        given: whether the argument was passed.
     """
 
     name: str
@@ -57,8 +57,8 @@ class Arguments:
 
     Attributes:
         arguments: the arguments, in the order of their first use.
-        unused: a warning for each argument that was passed but that nothing declares or uses.
-        problems: the reasons why the expansion did not finish; then, arguments may be missing from the list.
+        unused: a warning for each passed argument that no file declares or uses.
+        problems: the errors that stopped the expansion. If there are any, `arguments` may be incomplete.
     """
 
     arguments: tuple[Argument, ...]
@@ -67,7 +67,7 @@ class Arguments:
 
 
 def examine_arguments(inputs: Inputs) -> Arguments:
-    """Return the arguments of a description, with findings about the passed ones.
+    """Return the arguments of a description, with warnings about unused passed arguments.
 
     Raises:
         LinkwrightError: if the file cannot be read or is not XML.
@@ -91,8 +91,8 @@ class _Session(TracedSession):
     """A session in which no argument is missing.
 
     Attributes:
-        documents: path -> document of every file that was read.
-        declared: name -> the first element that declares it.
+        documents: the document of every file that was read, by path.
+        declared: the first element that declares each argument, by name.
         missing: the names of arguments that were used before they had a value.
         asked: the names of arguments that were used.
     """
@@ -106,7 +106,7 @@ class _Session(TracedSession):
         self._defaults: dict[str, str] = {}
 
     def read(self, path: str) -> Document:
-        """Return the document of a file, whose declarations become defaults for missing arguments."""
+        """Return the document of a file, and record its declarations of arguments."""
         document = super().read(path)
         if path not in self.documents:
             self.documents[path] = document
@@ -114,14 +114,14 @@ class _Session(TracedSession):
         return document
 
     def expect(self, document: Document) -> None:
-        """Record a document's default for each argument that may be missing before its declaration."""
+        """Record the defaults in a document for arguments that are used before their declaration."""
         for element in document.root.walk():
             if element.tag == "xacro:arg" and "name" in element.attributes:
                 default = element.attributes.get("default", "")
                 self._defaults.setdefault(element.attributes["name"], "" if "$" in default else default)
 
     def argument(self, name: str) -> str:
-        """Return the value of an argument, or its replacement."""
+        """Return the value of an argument, or a substitute if it is missing."""
         self.asked[name] = None
         if name not in self.arguments:
             self.missing[name] = None
@@ -129,17 +129,17 @@ class _Session(TracedSession):
         return super().argument(name)
 
     def declare(self, expander: Expander, site: Site) -> None:
-        """Expand the directive ``<xacro:arg>`` and record the declaration."""
+        """Expand ``<xacro:arg>`` and record the declaration."""
         DIRECTIVES["xacro:arg"](expander, site)
         self.declared.setdefault(site.node.attributes["name"], site.node)
 
 
 @dataclass
 class _Findings:
-    """The findings about arguments, by name.
+    """The data collected about arguments, by name.
 
     Attributes:
-        complete: whether the expansion finished, so that it used every argument that it needs.
+        complete: whether the expansion finished, so that every required argument was used.
     """
 
     inputs: Inputs
@@ -157,7 +157,7 @@ class _Findings:
                     self.uses.setdefault(name, span)
 
     def arguments(self) -> tuple[Argument, ...]:
-        """Return all arguments, those with a declaration first."""
+        """Return all arguments, starting with those that are declared."""
         session = self.session
         declared = {**session.declared, **self.elsewhere, **session.declared}
         needed = dict(session.missing)
@@ -174,7 +174,7 @@ class _Findings:
         return tuple(listed)
 
     def unused(self) -> tuple[Diagnostic, ...]:
-        """Return a warning for each argument that was passed but that nothing declares or uses."""
+        """Return a warning for each passed argument that no file declares or uses."""
         known = {**self.uses, **self.elsewhere, **self.session.declared, **self.session.asked}
         return tuple(
             Diagnostic(
@@ -214,7 +214,7 @@ class _Findings:
 
 
 def _follow_includes(session: _Session) -> None:
-    """Read the includes that an expansion did not reach, if their names are known."""
+    """Read the files of includes that an expansion did not reach, if their names are known."""
     scope = Scope(session.globals, session)
     pending = list(session.documents.items())
     seen = set(session.documents)
@@ -230,11 +230,11 @@ def _follow_includes(session: _Session) -> None:
                     seen.add(path)
                     pending.append((path, session.read(path)))
             except (Fault, LinkwrightError):
-                continue  # an include that depends on the files' own properties
+                continue  # the name of the included file depends on properties of the files
 
 
 def _uses(element: Element) -> Iterator[tuple[str, Span | None]]:
-    """Yield the arguments that an element uses, in its attributes and the texts directly inside it."""
+    """Yield the arguments that an element's attributes and own texts use, with locations."""
     for attribute, value in element.attributes.items():
         for match in _found(value):
             name = match["plain"] or match["called"]
@@ -250,7 +250,10 @@ def _found(text: str) -> Iterator[re.Match[str]]:
 
 
 def arguments_data(arguments: tuple[Argument, ...]) -> list[dict[str, Any]]:
-    """Return arguments as JSON-ready data; places are 1-based, missing ones are None."""
+    """Return arguments as JSON-ready data.
+
+    Lines and columns start at 1, and are None if there is no location.
+    """
     return [
         {
             "name": argument.name,

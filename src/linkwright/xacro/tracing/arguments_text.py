@@ -1,4 +1,4 @@
-"""The list of a description's arguments for a terminal."""
+"""The list of a description's arguments as text for a terminal."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.xacro.tracing.provenance_text import place
 
 
 def arguments_text(arguments: tuple[Argument, ...]) -> str:
-    """Return the arguments, one on each line: name, default, place, and remarks."""
+    """Return a line for each argument: name, default, location, and remarks."""
     if not arguments:
         return "the file takes no arguments\n"
     names = max(len(argument.name) for argument in arguments)
@@ -24,7 +24,7 @@ def arguments_text(arguments: tuple[Argument, ...]) -> str:
 
 
 def incomplete(examined: Arguments) -> list[Diagnostic]:
-    """Return a remark that the list may lack arguments, if the expansion did not finish."""
+    """Return a remark that the list may be incomplete; empty if the expansion finished."""
     if not examined.problems:
         return []
     first = examined.problems[0]
@@ -37,7 +37,7 @@ def incomplete(examined: Arguments) -> list[Diagnostic]:
 
 
 def _arguments_causing(arguments: Iterable[Argument], message: str) -> list[Argument]:
-    """Return the arguments whose defaults caused a message, such as one that names a missing file."""
+    """Return the arguments whose defaults occur in a message, such as about a missing file."""
     return [
         argument
         for argument in arguments

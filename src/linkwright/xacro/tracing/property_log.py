@@ -1,4 +1,4 @@
-"""The log of when properties are set and used, as ``xacro --verbosity 3`` and ``4`` print it."""
+"""The log of property definitions and uses that ``xacro --verbosity 3`` and ``4`` print."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from linkwright.xmltree import Element
 
 
 def log_properties(inputs: Inputs, put: Callable[[str], None], *, everywhere: bool) -> None:
-    """Expand a file only for the log; its mistakes are not reported.
+    """Expand a file to log its properties; errors only end the log.
 
     Args:
         inputs: the inputs of the expansion.
         put: the function that receives each line of the log.
-        everywhere: whether the properties and parameters of macros and namespaces are logged, too.
+        everywhere: whether to also log the properties and parameters of macros and namespaces.
     """
     log = _Log(put, everywhere=everywhere)
     try:
@@ -31,21 +31,21 @@ def log_properties(inputs: Inputs, put: Callable[[str], None], *, everywhere: bo
 
 
 class _Log:
-    """The logger, which puts a `_Table` into each scope at its first probe."""
+    """The logger, which installs a `_Table` in each scope at the scope's first probe."""
 
     def __init__(self, put: Callable[[str], None], *, everywhere: bool) -> None:
         self._put = put
         self._everywhere = everywhere
 
     def probe(self, expander: Expander, site: Site) -> None:
-        """Log the properties of the scope of a probe."""
+        """Start logging the scope of a probe, unless it is logged already."""
         scope, about = site.scope, site.node.origin
         depth = _depth(scope)
         if scope.values.__class__ is dict and (depth == 1 or self._everywhere):
             session = expander.session
             known, scope.values = scope.values, _Table(session, self._put, depth - 1)
             if session.frame is not None:
-                session.place = session.frame.site  # this reports the existing parameters
+                session.place = session.frame.site  # the location in the log of parameters that already exist
             for name, value in known.items():
                 scope.values[name] = value
         if not (isinstance(about, Element) and about.tag == "xacro:macro"):
@@ -53,7 +53,7 @@ class _Log:
 
 
 class _Table(dict[str, Any]):
-    """The names of a scope, with logged access."""
+    """The names of a scope, with a log of each access."""
 
     __slots__ = ("_indent", "_put", "_session", "_waiting")
 
@@ -66,7 +66,7 @@ class _Table(dict[str, Any]):
 
     def __setitem__(self, name: str, value: Any) -> None:
         super().__setitem__(name, value)
-        if name in self._waiting:  # not set again, but evaluated because it is used
+        if name in self._waiting:  # a lazy property that is evaluated at its first use, not a new definition
             self._waiting.discard(name)
             self._log("use", name, value)
         else:
@@ -81,7 +81,7 @@ class _Table(dict[str, Any]):
         return value
 
     def get(self, name: str, default: Any = None) -> Any:
-        """Return the value of a name and log its use."""
+        """Return the value of a name, or `default` if there is none, and log the use."""
         return self[name] if name in self else default  # noqa: SIM401 - it is `get` itself
 
     def _log(self, what: str, name: str, value: Any) -> None:

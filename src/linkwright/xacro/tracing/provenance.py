@@ -1,4 +1,4 @@
-"""The provenance of an element of an expansion: the place, calls and values of each of its parts."""
+"""The provenance of an element of an expansion: the location, calls and values of each part."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from linkwright.xmltree import Element, Text
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """A macro call or an include on the way to an element.
+    """A macro call or an include that led to an element.
 
     Attributes:
         macro: the macro's name, or None for an include.
-        span: the place of the calling or including tag.
-        parameters: the parameters of the call with their values; blocks are left out.
+        span: the location of the calling or including tag.
+        parameters: the parameters of the call with their values, without blocks.
     """
 
     macro: str | None
@@ -35,12 +35,12 @@ class AttributeProvenance:
     """The provenance of an attribute.
 
     Attributes:
-        name: its name.
-        value: its value in the result.
-        written: its text in the source, such as ``${prefix}_link``.
-        span: the place of that text.
+        name: the name of the attribute.
+        value: the value in the result.
+        written: the text in the source, such as ``${prefix}_link``.
+        span: the location of this text.
         values: the names in the text, with their values.
-        calls: the calls and includes that contain that place, innermost first; they differ from the element's if
+        calls: the calls and includes that contain the text, innermost first. They differ from those of the element if
             ``<xacro:attribute>`` has set the attribute.
     """
 
@@ -59,7 +59,7 @@ class TextProvenance:
     Attributes:
         value: the text in the result, without surrounding blanks.
         written: the text in the source.
-        span: the place of the text in the source.
+        span: the location of the text in the source.
         values: the names in the text, with their values.
     """
 
@@ -74,12 +74,12 @@ class Provenance:
     """The provenance of an element of an expansion.
 
     Attributes:
-        element: the element as it is in the result.
-        span: the place where it is written.
-        calls: the macro calls and includes that contain it, innermost first.
+        element: the element in the result.
+        span: the location where the element is written.
+        calls: the macro calls and includes that contain the element, innermost first.
         attributes: the provenance of each attribute, in document order.
-        texts: the provenance of each text directly inside, except blank texts.
-        children: the provenance of the elements inside.
+        texts: the provenance of each text directly in the element, except blank texts.
+        children: the provenance of the child elements.
     """
 
     element: Element
@@ -90,7 +90,7 @@ class Provenance:
     children: tuple[Provenance, ...]
 
     def walk(self) -> Iterator[Provenance]:
-        """Yield this provenance and that of all elements inside, in document order."""
+        """Yield this provenance and the provenance of all elements inside, in document order."""
         pending = [self]
         while pending:
             provenance = pending.pop()
@@ -104,7 +104,7 @@ def provenance_of(inputs: Inputs, root: Element, element: Element) -> Provenance
 
 
 class Tracer:
-    """The tracer, which expands again with a recorder and returns the recorded provenance.
+    """The tracer, which finds the provenance of elements by expanding the inputs again.
 
     Args:
         inputs: the inputs of the expansion.
@@ -126,7 +126,7 @@ class Tracer:
         """Return the provenance of an element of the first result.
 
         Raises:
-            LinkwrightError: XAC802 if the second result differs.
+            LinkwrightError: XAC802 if the second result differs from the first.
         """
         with recursion_limit_for(self._inputs.limits):
             return self._trace(element)

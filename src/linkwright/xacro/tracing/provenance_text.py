@@ -1,4 +1,4 @@
-"""The provenance of elements as text for a terminal and as plain data."""
+"""The provenance of elements as text for a terminal, and as JSON-ready data."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ _OUTSIDE = {
 
 
 def provenance_text(provenance: Provenance) -> str:
-    """Return terminal text: the resulting element, the calls that produced it, and the evaluated texts."""
+    """Return a provenance as text: the element, its calls, and the evaluated texts."""
     return "\n".join([write_element(provenance.element).rstrip("\n"), "", *provenance_lines(provenance)]) + "\n"
 
 
 def provenance_lines(provenance: Provenance) -> list[str]:
-    """Return the lines of `provenance_text` after the element itself."""
+    """Return the lines of `provenance_text` that follow the element itself."""
     lines = [f"written at {place(provenance.span)}"]
     lines += [f"  {line}" for call in provenance.calls for line in _call_lines(call)]
     evaluated = [line for part in provenance.walk() for line in _element_lines(part, provenance)]
@@ -34,7 +34,10 @@ def provenance_lines(provenance: Provenance) -> list[str]:
 
 
 def provenance_data(provenance: Provenance) -> dict[str, Any]:
-    """Return JSON-ready data; places are 1-based, missing ones are None."""
+    """Return a provenance as JSON-ready data.
+
+    Lines and columns start at 1, and are None if there is no location.
+    """
     return {
         "tag": provenance.element.tag,
         "xml": write_element(provenance.element),
@@ -47,7 +50,7 @@ def provenance_data(provenance: Provenance) -> dict[str, Any]:
 
 
 def place(span: Span | None) -> str:
-    """Return a place as ``file:line:column``."""
+    """Return a location as ``file:line:column``."""
     if span is None:
         return "(no file)"
     file = span.file if span.file.startswith("<") else display_path(span.file)
@@ -108,7 +111,7 @@ def _is_shown(attribute: AttributeProvenance, provenance: Provenance) -> bool:
 
 
 def _is_inside(attribute: AttributeProvenance, provenance: Provenance) -> bool:
-    """Return whether an attribute is written on its element, not set by a tag elsewhere."""
+    """Return whether an attribute is written on its element instead of set by another tag."""
     element: Element = provenance.element
     return attribute.span is None or element.attribute_span(attribute.name) == attribute.span
 

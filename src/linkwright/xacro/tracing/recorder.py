@@ -1,4 +1,4 @@
-"""The recorder, which records the expansion steps for each element of the result."""
+"""The recorder of the expansion steps that produced each element of the result."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ class Moment:
     """The record of how an element was produced.
 
     Attributes:
-        node: the element as it is written.
+        node: the element in the source.
         frame: the innermost macro call or include at that time.
-        values: attribute -> the names in its value.
-        texts: the texts with expressions as they are written, each with the names in it.
+        values: the names in each attribute's value, by attribute.
+        texts: the unevaluated texts with expressions, each with the names in it.
     """
 
     node: Element
@@ -37,7 +37,7 @@ class Moment:
 
 @dataclass(frozen=True)
 class Setting:
-    """A use of ``<xacro:attribute>``: its element, the active call or include, and the names in its value."""
+    """A use of ``<xacro:attribute>``: element, active call or include, and names in the value."""
 
     node: Element
     name: str
@@ -53,7 +53,7 @@ class Recorder:
         given: the names of the arguments that were passed.
 
     Attributes:
-        directives: the directives for the expansion.
+        directives: the functions that expand and record xacro's own tags, by tag.
     """
 
     def __init__(self, given: Collection[str] = ()) -> None:
@@ -71,10 +71,10 @@ class Recorder:
         self._parameters: dict[int, dict[str, Value]] = {}
         self._of_frame: dict[int, tuple[Value, ...]] = {}
         self._arguments: dict[str, Element] = {}
-        self._kept: list[Any] = []  # keeps objects alive that are known by their id
+        self._kept: list[Any] = []  # objects that must stay alive because their `id` is a key
 
     def call(self, expander: Expander, site: Site) -> None:
-        """Expand a macro call, and record it."""
+        """Expand a macro call, and record the attributes that it sets."""
         self._watched(call_macro)(expander, site)
 
     # the recorded moments
@@ -85,17 +85,20 @@ class Recorder:
         return moment[1] if moment else None
 
     def setting(self, element: Element, name: str) -> Setting | None:
-        """Return the ``<xacro:attribute>`` that set an element's attribute; None if it is on the element."""
+        """Return the ``<xacro:attribute>`` that set an attribute of an element, or None."""
         return self._set.get((id(element), name))
 
     def parameters(self, frame: Frame) -> tuple[Value, ...]:
-        """Return the parameters of a macro call."""
+        """Return the parameters of a macro call with their values; empty if none are recorded."""
         return self._of_frame.get(id(frame), ())
 
     # watching
 
     def _watched(self, directive: Directive) -> Directive:
-        """Return a directive that also records the effect of ``<xacro:attribute>`` on the enclosing element."""
+        """Return a directive that also records uses of ``<xacro:attribute>`` in its expansion.
+
+        Declarations of arguments are recorded, too.
+        """
 
         def expand(expander: Expander, site: Site) -> None:
             before = len(self._settings)
@@ -145,7 +148,7 @@ class Recorder:
 
     def _probe(self, expander: Expander, site: Site) -> None:
         element, about = site.parent, site.node.origin
-        if isinstance(about, Moment):  # a block that is expanded a second time
+        if isinstance(about, Moment):  # the second expansion of a block, whose elements already have a record
             self._remember(element, about)
         elif isinstance(about, Text):
             known = self.moment(element)
@@ -192,7 +195,7 @@ class Recorder:
             return self._substituted(expander, reference, scope)
         holder = _holder(scope, reference.name)
         if holder is None or holder.parent is None:
-            return None  # a name that the language provides
+            return None  # the language provides this name
         value = _evaluated(expander, f"${{{reference.path}}}", scope)
         if value is _UNKNOWN or callable(value) or isinstance(value, Scope):
             return None
@@ -209,7 +212,7 @@ class Recorder:
         return Value(reference.path, "property", shown(value), place, written)
 
     def _member(self, namespace: object, path: str) -> tuple[Span | None, str | None] | None:
-        """Return where a property of a namespace, such as ``A.B.radius``, is defined, with its text."""
+        """Return the location and text of a namespace's property, such as ``A.B.radius``."""
         *_, name = parts = path.split(".")
         for part in parts[1:-1]:
             namespace = namespace.values.get(part) if isinstance(namespace, Scope) else None
@@ -243,7 +246,7 @@ def _evaluated(expander: Expander, text: str, scope: Scope) -> Any:
 
 
 def _evaluate_again(expander: Expander, node: Element, attribute: str, scope: Scope) -> str | None:
-    """Evaluate a directive's attribute a second time; None if that could change something."""
+    """Return a directive's attribute, evaluated again, or None if this might change a value."""
     text = node.attributes.get(attribute)
     if text is None or ("$" in text and expander.session.changes(text)):
         return None
@@ -259,7 +262,7 @@ def _holder(scope: Scope, name: str) -> Scope | None:
 
 
 def _parameter(parameter: Parameter, value: Any, call: Element, macro: Element) -> Value:
-    """Return the record of a call's parameter: its argument, or its default."""
+    """Return the record of a call's parameter, with its argument or its default."""
     text = shown(value.text if isinstance(value, Lazy) else literal(value))
     if parameter.name in call.attributes:
         place, written = call.attribute_span(parameter.name), written_attribute(call, parameter.name)

@@ -1,4 +1,4 @@
-"""The names that a text with expressions refers to, each with its value and that value's origin."""
+"""The names to which a text with expressions refers, and the origin of each name's value."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ _LONGEST = 100
 
 @dataclass(frozen=True, slots=True)
 class Value:
-    """The value of a name when a text was evaluated.
+    """The value of a name at the time when a text was evaluated.
 
     Attributes:
         name: the name as written, such as ``radius``, ``arm.length`` or ``$(arg prefix)``.
         kind: ``parameter``, ``property``, ``argument``, ``package`` or ``variable`` (of the environment).
-        value: its value in Python notation; long values are truncated.
-        span: the place where the value is written, or None if it was passed from outside.
-        written: the text at this place, such as ``${wheel_radius}``, or None.
+        value: the value in Python notation, truncated if it is long.
+        span: the location where the value is written, or None if it was passed from outside.
+        written: the text at this location, such as ``${wheel_radius}``, or None.
     """
 
     name: str
@@ -39,7 +39,7 @@ class Reference(NamedTuple):
     """A name in a text.
 
     Attributes:
-        path: the name as an expression, with the keys that are accessed in it.
+        path: the name with the keys by which its parts are accessed, as an expression.
         name: the name alone.
         command: ``arg``, ``find``, ``env`` or ``optenv`` for a substitution, else None.
     """
@@ -50,7 +50,7 @@ class Reference(NamedTuple):
 
 
 def references(text: str) -> list[Reference]:
-    """Return the names in a text, each path once, in the order of the text."""
+    """Return the references in a text without repeated paths, in the order of the text."""
     found = dict.fromkeys(_references(text))
     return list(found)
 
@@ -68,7 +68,7 @@ def shown(value: Any) -> str:
 
 
 def written_attribute(element: Any, name: str) -> str | None:
-    """Return an attribute's value as it is written in the source, or None if it is not written there."""
+    """Return the unevaluated value of an attribute, or None if it is not in the source."""
     source = element.source
     if source is None:
         return None
@@ -108,7 +108,7 @@ def _in_expression(inside: str) -> Iterator[Reference]:
 
 
 class _Paths(ast.NodeVisitor):
-    """The visitor that collects names with the keys accessed in them.
+    """The visitor that collects names, each with the keys by which its parts are accessed.
 
     The variables of lambdas and comprehensions are in `bound`.
     """
@@ -128,14 +128,14 @@ class _Paths(ast.NodeVisitor):
                 if isinstance(part, ast.Subscript):
                     self.visit(part.slice)
         elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
-            for part in (node.func.value, *node.args, *node.keywords):  # the method itself is not a value to show
+            for part in (node.func.value, *node.args, *node.keywords):  # show the object and arguments, not the method
                 self.visit(part)
         else:
             self.generic_visit(node)
 
 
 def _root(node: ast.AST) -> str | None:
-    """Return the name that a path of keys begins with; None if the node is not such a path."""
+    """Return the name at the beginning of a path of keys, or None for other nodes."""
     while True:
         if isinstance(node, ast.Name):
             return node.id

@@ -1,9 +1,9 @@
 """Traced expansions for explanations and logs, at no cost for other expansions.
 
 The trees are copied with a probe at the beginning of every element and macro, and before every text with a dollar.
-A probe is a xacro tag like any other: the observer defines its effect, and sees the element that is being produced,
-the scope, and the enclosing calls and includes. Probes stay in the result, since a block is expanded twice, and are
-removed at the end.
+A probe is a xacro tag like any other. The observer defines its effect, and can access the element that is being
+produced, the scope, and the enclosing calls and includes. Probes stay in the result because a block is expanded
+twice. They are removed at the end.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class TracedSession(Session):
         self._documents: dict[str, Document] = {}
 
     def read(self, path: str) -> Document:
-        """Return the document of a file; see `Session.read`."""
+        """Return the document of a file, with probes if they are enabled; see `Session.read`."""
         if not self._probes:
             return super().read(path)
         document = self._documents.get(path)
@@ -51,16 +51,16 @@ def expand_traced(
     directives: Mapping[str, Directive],
     call: Directive = call_macro,
 ) -> Document:
-    """Expand with different directives, without a banner and warnings about unused arguments.
+    """Expand with other directives, without a banner or warnings about unused arguments.
 
     Args:
         inputs: the inputs of the expansion.
         session: the session of the expansion.
-        directives: tag -> the function that expands it, including the one for `PROBE` if there are probes.
+        directives: the functions that expand xacro's own tags, by tag, with a function for `PROBE` if there are probes.
         call: the function that expands macro calls.
 
     Raises:
-        LinkwrightError: the mistakes of the description.
+        LinkwrightError: the errors of the description.
     """
     document = main_document(session, inputs.text)
     if inputs.text is not None and PROBE in directives:
@@ -70,7 +70,10 @@ def expand_traced(
 
 
 def with_probes(document: Document) -> Document:
-    """Return a copy with probes; a probe's `origin` is the element or text of the original after it."""
+    """Return a copy of a document with probes.
+
+    The `origin` of a probe is the element or text of the original that follows the probe.
+    """
     root = Element(document.root.tag, document.root.attributes, document.root.source, document.root.offset)
     pending = [(document.root, root)]
     while pending:
@@ -106,7 +109,10 @@ def without_probes(document: Document) -> Document:
 
 
 def recorded_probe(memory: object) -> Element:
-    """Return a probe that stays in the result; its `origin` is the record of the enclosing element."""
+    """Return a probe that stays in the result.
+
+    The `origin` of the probe is the record of the enclosing element.
+    """
     return Element(PROBE, origin=memory)
 
 

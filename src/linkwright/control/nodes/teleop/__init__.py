@@ -1,1 +1,1 @@
-"""Teleoperation with keyboards and joysticks, and multiplexing and smoothing of velocities."""
+"""Nodes for teleoperation with keyboards and joysticks, and a multiplexer of velocities."""

@@ -1,6 +1,4 @@
-"""joy_node of joy and joy_linux_node of joy_linux, which publish the state of a joystick.
-
-The topic is ``joy``, of type sensor_msgs/msg/Joy.
+"""joy_node of joy and joy_linux_node of joy_linux, which publish the state of a joystick on ``joy``.
 
 Parameters, the order of axes and buttons, and their signs (forwards and left are positive) are those of the ROS nodes;
 a directional pad is represented by two axes after the others. Two things differ on purpose: when a joystick is
@@ -29,14 +27,14 @@ _FASTEST = 1000.0
 
 @dataclass(frozen=True, slots=True)
 class _Settings:
-    """The settings of both nodes.
+    """The settings common to both nodes.
 
     Attributes:
         number: the number of the device.
         name: a part of the device's name; empty to use the number or path.
-        path: the device; None to use the number or name.
+        path: the path of the device; None to use the number or name.
         deadzone: the fraction of an axis around its centre that counts as 0.
-        repeat_rate: messages per second while nothing changes, 0 for none.
+        repeat_rate: messages per second while nothing changes; 0 for none.
         coalesce: the time in s for which changes of axes are collected.
         sticky: whether a button stays pressed until it is pressed again.
     """
@@ -50,13 +48,13 @@ class _Settings:
     sticky: bool
 
     def device(self) -> Path | None:
-        """Return the device; None if it does not exist."""
+        """Return the path of the device, or None if it does not exist."""
         if self.path is not None and not self.name:
             return self.path if self.path.exists() else None
         return find_device(self.number, self.name)
 
     def wanted(self) -> str:
-        """Return a description of the requested device, in the user's words."""
+        """Return the requested name or path of the device, for log messages."""
         return f"'{self.name}'" if self.name else str(self.path or f"/dev/input/js{self.number}")
 
 
@@ -83,7 +81,7 @@ class JoyNode(SingleNode):
             self._start()
 
     def close(self) -> None:
-        """Close the joystick."""
+        """Close the joystick and the node."""
         if self._device is not None:
             self._device.close()
         super().close()
@@ -139,7 +137,7 @@ class JoyNode(SingleNode):
             self._repeat.reset()
 
     def _wait(self, text: str) -> None:
-        """Log once why there is no joystick."""
+        """Log the reason why there is no joystick, unless it was the last one logged."""
         if text != self._missing:
             self._missing = text
             self._node.get_logger().warning(text)
@@ -160,7 +158,7 @@ class JoyNode(SingleNode):
             if event.is_axis:
                 soon |= self._turned(event)
             elif self._pressed(event):
-                # When it is opened, the device reports all axes and buttons; these events share one message.
+                # After opening, the device reports the state of all axes and buttons; these events share one message.
                 now, soon = now or not event.initial, soon or event.initial
         if now or (soon and self._settings.coalesce == 0.0):
             self._publish()
@@ -200,9 +198,9 @@ class JoyNode(SingleNode):
 
 
 class JoyLinuxNode(JoyNode):
-    """The running joy_linux_node.
+    """The running joy_linux_node: a `JoyNode` with other parameters.
 
-    It is a `JoyNode` with the parameters ``dev``, ``dev_name`` and ``coalesce_interval``.
+    These are ``dev``, ``dev_name`` and ``coalesce_interval``.
     """
 
     def _read_settings(self, node: Node) -> _Settings:
@@ -214,11 +212,11 @@ class JoyLinuxNode(JoyNode):
 
 
 def deflection(value: int, deadzone: float) -> float:
-    """Return the deflection of an axis, -1 to 1, forwards and to the left positive.
+    """Return the deflection of an axis from -1 to 1, positive forwards and to the left.
 
     Args:
-        value: the device's value, -32767 to 32767, backwards and to the right positive.
-        deadzone: the part around the centre that counts as 0; values beyond it start at 0.
+        value: the device's value from -32767 to 32767, positive backwards and to the right.
+        deadzone: the fraction around the centre that counts as 0; beyond it, the deflection grows from 0.
     """
     part = max(-1.0, min(1.0, -value / FULL))
     beyond = abs(part) - deadzone
@@ -235,7 +233,9 @@ def _settings(node: Node, number: int, name: str, path: Path | None, coalesce: f
 
 
 def _within(node: Node, name: str, default: float, least: float, most: float | None) -> float:
-    """Declare a parameter, and return its value after checking that it is within limits.
+    """Declare a numeric parameter, and return its value after checking the range.
+
+    `most` is None for no maximum.
 
     Raises:
         LinkwrightError: NODE903, the parameter is out of its range.

@@ -26,13 +26,13 @@ _GET_NAME = 0x80006A13 | _NAME_BYTES << 16
 
 
 class JoystickEvent(NamedTuple):
-    """A change of a joystick.
+    """A change of an axis or a button.
 
     Attributes:
         is_axis: whether an axis has changed; otherwise a button.
         number: the number of the axis or button, from 0.
         value: for an axis -32767 to 32767, right and backwards positive; for a button 1 while it is pressed.
-        initial: whether the event reports a state at the opening of the device.
+        initial: whether the event reports the state when the device was opened.
     """
 
     is_axis: bool
@@ -45,9 +45,9 @@ class JoystickDevice:
     """An open joystick.
 
     Args:
-        path: the device.
-        on_events: called with the changes.
-        on_end: called once when the device is gone.
+        path: the path of the device.
+        on_events: called with each list of events.
+        on_end: called once when the device was unplugged.
 
     Raises:
         OSError: the device cannot be opened.
@@ -62,12 +62,12 @@ class JoystickDevice:
         self.name = _name_of(self._descriptor)
         try:
             asyncio.get_running_loop().add_reader(self._descriptor, self._read)
-        except OSError:  # a folder or a file, which cannot be waited for
+        except OSError:  # The event loop cannot watch a folder or a file.
             os.close(self._descriptor)
             raise
 
     def close(self) -> None:
-        """Close the device; a second call does nothing."""
+        """Close the device; further calls do nothing."""
         descriptor, self._descriptor = self._descriptor, None
         if descriptor is not None:
             asyncio.get_running_loop().remove_reader(descriptor)
@@ -79,7 +79,7 @@ class JoystickDevice:
             data = os.read(self._descriptor, _EVENT.size * _EVENTS_AT_ONCE)
         except BlockingIOError:
             return
-        except OSError:  # the joystick was unplugged
+        except OSError:  # The joystick was unplugged.
             data = b""
         if not data:
             self.close()
@@ -92,9 +92,9 @@ class JoystickDevice:
 
 
 def find_device(number: int, name: str = "") -> Path | None:
-    """Find a device by its number, or the first one whose name contains a text.
+    """Return the path of a joystick, found by number or by a part of its name.
 
-    Returns None if there is none.
+    Returns None if there is no such joystick.
 
     Args:
         number: the number in ``/dev/input/jsNUMBER``.
@@ -128,6 +128,6 @@ def _name_of(descriptor: int) -> str:
     buffer = bytearray(_NAME_BYTES)
     try:
         fcntl.ioctl(descriptor, _GET_NAME, buffer)
-    except OSError:  # not a real joystick
+    except OSError:  # The file is not a joystick.
         return ""
     return buffer.split(b"\0", 1)[0].decode("utf-8", "replace")

@@ -2,7 +2,7 @@
 
 Keys, parameters and the line with the speeds are those of the ROS node; ``repeat_rate`` and ``key_timeout`` are those
 of its ROS 1 version. Three things differ on purpose: unless ``stamped`` is set, the node publishes the type that the
-topic's subscriptions expect; whatever ends the node, it publishes a stop; and a key that sends several characters, such
+topic's subscriptions expect; the node publishes a stop however it ends; and a key that sends several characters, such
 as an arrow key, stops the robot, while the ROS node interprets the last character as a key.
 """
 
@@ -34,7 +34,7 @@ _SPEEDS_BETWEEN_HELPS = 15
 
 
 class TeleopTwistKeyboard(SingleNode):
-    """The running node.
+    """The running teleop_twist_keyboard.
 
     Parameters: ``stamped`` (by default, the type that the subscriptions expect), ``frame_id``, ``speed`` (m/s),
     ``turn`` (rad/s), ``repeat_rate`` (messages per second while nothing is pressed; 0 for none), ``key_timeout`` (s
@@ -69,7 +69,7 @@ class TeleopTwistKeyboard(SingleNode):
             self._terminal = KeyTerminal(terminal, self._typed, self._ended)
         except OSError as error:
             raise _no_terminal() from error
-        # Use the steady clock: simulated time may be paused, and a stop must not wait for it.
+        # Use the steady clock, because a stop must not wait for simulated time, which may be paused.
         clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
         node.create_timer(_REVIEW_SECONDS, self._review, clock=clock)
         if repeat_rate > 0.0:
@@ -79,7 +79,7 @@ class TeleopTwistKeyboard(SingleNode):
         self._print(speeds_text(self._speed, self._turn))
 
     def close(self) -> None:
-        """Stop the robot, restore the terminal, and close."""
+        """Stop the robot, restore the terminal, and close the node."""
         self._terminal.close()
         self._topic.stop()
         self._topic.close()
@@ -93,7 +93,7 @@ class TeleopTwistKeyboard(SingleNode):
         return value
 
     def _print(self, text: str) -> None:
-        with contextlib.suppress(OSError):  # the terminal is being closed, which the reader reports
+        with contextlib.suppress(OSError):  # The reader reports a closed terminal.
             self._output(text)
 
     def _typed(self, text: str) -> None:
@@ -119,9 +119,9 @@ class TeleopTwistKeyboard(SingleNode):
             self._direction = MOVES.get(key, STILL)
 
     def _lost(self) -> None:
-        """Stop the robot when no key has arrived for too long.
+        """Stop the robot because no key was received within ``key_timeout``.
 
-        The user may have lost the connection or released the key.
+        The user may have released the key or lost the connection.
         """
         self._silence.cancel()
         if self._direction != STILL:
@@ -135,14 +135,11 @@ class TeleopTwistKeyboard(SingleNode):
             self.finished.set_result(0)
 
     def _follow(self) -> bool:
-        """Publish with the type that the subscriptions expect.
-
-        Returns whether there are any subscriptions.
-        """
+        """Adopt the message type that the subscriptions expect, and return whether there are any."""
         return self._topic.review(may_change=self._direction == STILL or self._unheard) > 0
 
     def _review(self) -> None:
-        """Adapt to the subscriptions; warn once if there is none while the robot should move."""
+        """Adopt the type of the subscriptions, and warn once if a moving robot has none."""
         if self._follow():
             self._unheard = False
         elif self._direction != STILL and not self._unheard:

@@ -1,4 +1,4 @@
-"""The keys of teleop_twist_keyboard; the layout is that of the ROS node."""
+"""The keys of teleop_twist_keyboard, in the layout of the ROS node."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ _KEYS = re.compile(r"\x1b(?:\[[0-?]*[ -/]*[@-~]|O.)?|.", re.DOTALL)
 
 
 class Direction(NamedTuple):
-    """A direction, as fractions of the maximum speeds.
+    """A direction of motion, in fractions of the linear and angular speed.
 
-    The fractions are those forwards, to the left, up, and rotating to the left.
+    The components are forwards, to the left, up, and counterclockwise.
     """
 
     x: float = 0.0
@@ -61,12 +61,12 @@ SPEEDS = {
 
 
 def keys_in(text: str) -> Iterator[str]:
-    """Split the text of a terminal into keys; arrow and function keys send several characters."""
+    """Iterate over the keys in a terminal's input, some of which send several characters."""
     return (found[0] for found in _KEYS.finditer(text))
 
 
 def help_text() -> Phrase:
-    """Return the help text about the keys."""
+    """Return the text that explains the keys."""
     return phrase("""
 Keys are published as velocities, Twist or TwistStamped.
 ---------------------------
@@ -95,5 +95,5 @@ CTRL-C ends
 
 
 def speeds_text(speed: float, turn: float) -> str:
-    """Return the line with the speeds, in m/s and rad/s."""
+    """Return the line that shows the current speeds, in m/s and rad/s."""
     return f"currently:\tspeed {speed}\tturn {turn} "

@@ -1,4 +1,4 @@
-"""A terminal that reports each key as it is pressed, and is restored afterwards."""
+"""A terminal that reports each key when it is pressed, and is restored afterwards."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _POLL_SECONDS = 0.02
 
 
 class KeyTerminal:
-    """Reads keys from a terminal while it is open.
+    """A terminal in a mode that reports each key at once.
 
     Keys are not echoed. Ctrl-C still sends a signal. Keys that would suspend or abort the program (Ctrl-Z and the like)
     are treated as ordinary keys, because a suspended program cannot stop a robot.
@@ -35,7 +35,7 @@ class KeyTerminal:
         self._undo = _watch_windows(self._took) if sys.platform == "win32" else self._watch(descriptor)
 
     def close(self) -> None:
-        """Restore the terminal; a second call does nothing."""
+        """Restore the terminal; further calls do nothing."""
         undo, self._undo = self._undo, lambda: None
         undo()
 
@@ -63,13 +63,13 @@ class KeyTerminal:
                 data = os.read(descriptor, _READ_BYTES)
             except BlockingIOError:
                 return
-            except OSError:  # the other side of the terminal is closed
+            except OSError:  # The other side of the terminal is closed.
                 data = b""
             self._took(data)
 
         def undo() -> None:
             loop.remove_reader(descriptor)
-            with contextlib.suppress(termios.error):  # the terminal may be closed
+            with contextlib.suppress(termios.error):  # The terminal may be closed.
                 termios.tcsetattr(descriptor, termios.TCSADRAIN, before)
 
         loop.add_reader(descriptor, read)
@@ -77,7 +77,7 @@ class KeyTerminal:
 
 
 def _watch_windows(took: Callable[[bytes], None]) -> Callable[[], None]:
-    """Poll the Windows console for keys, because it cannot be waited for along with other events.
+    """Poll the Windows console for keys, because the event loop cannot watch it.
 
     Returns:
         A function that stops polling.

@@ -1,8 +1,8 @@
 """teleop_node of teleop_twist_joy, which drives a robot by joystick while a button is held.
 
 Parameters and defaults are those of the ROS node. Two things differ on purpose: unless ``publish_stamped_twist`` is
-set, the node publishes the type that the topic's subscriptions expect; and when the last publisher of ``joy`` is gone,
-it stops the robot.
+set, the node publishes the type that the topic's subscriptions expect; and it stops the robot when the last publisher
+of ``joy`` is gone.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ _TURBO_SCALES = {"linear.x": 1.0, "angular.yaw": 1.0}
 
 @dataclass(frozen=True, slots=True)
 class _Axis:
-    """The joystick axis for one axis of the robot.
+    """The mapping from a joystick axis to one component of the velocity.
 
     Attributes:
         number: the number of the joystick's axis, below 0 for none.
-        scale: the velocity at its end position, in m/s or rad/s.
-        turbo_scale: the velocity at its end position while the turbo button is held.
+        scale: the velocity at the axis's end position, in m/s or rad/s.
+        turbo_scale: the velocity at the end position while the turbo button is held.
     """
 
     number: int
@@ -40,14 +40,14 @@ class _Axis:
     turbo_scale: float
 
     def velocity(self, axes: Sequence[float], *, turbo: bool) -> float:
-        """Return the velocity for the axes of a message; 0 if the joystick lacks the axis."""
+        """Return the velocity for the axis values of a message, or 0 if the joystick lacks the axis."""
         if not 0 <= self.number < len(axes):
             return 0.0
         return axes[self.number] * (self.turbo_scale if turbo else self.scale)
 
 
 class TeleopTwistJoy(SingleNode):
-    """The running node."""
+    """The running teleop_node."""
 
     DEFAULT_NAME = "teleop_twist_joy_node"
 
@@ -88,7 +88,7 @@ class TeleopTwistJoy(SingleNode):
             logger.info(f"Turbo on button {self._turbo_button}.")
 
     def close(self) -> None:
-        """Stop the robot if this node was driving it, and close."""
+        """Stop the robot if this node was driving it, and close the node."""
         if self._drives:
             self._topic.stop()
         self._topic.close()

@@ -1,9 +1,9 @@
 """twist_mux, which forwards the velocity topic with the highest priority to ``cmd_vel_out``.
 
 Parameters, rules and diagnostics are those of the ROS node. A topic is active until its ``timeout`` has passed since
-its last message. A lock that is on, or that has been silent for its ``timeout``, blocks all topics of lower priority.
-Two things differ on purpose: a topic without a timeout blocks others only after its first message, and a stop is sent
-when the publisher of the last velocity is lost.
+its last message. A lock that is on, or that received no message within its ``timeout``, blocks all topics of lower
+priority. Two things differ on purpose: a topic without a timeout blocks others only after its first message, and a stop
+is sent when the publisher of the last velocity is lost.
 """
 
 from __future__ import annotations
@@ -38,11 +38,11 @@ class _Source:
         self._heard_ns: int | None = None
 
     def hear(self, now_ns: int) -> None:
-        """Note that a message has arrived."""
+        """Record the arrival of a message."""
         self._heard_ns = now_ns
 
     def expired(self, now_ns: int) -> bool:
-        """Return whether the last message is too old or missing; always False without a timeout."""
+        """Return whether no message arrived within the timeout; always False without a timeout."""
         if self.timeout == 0.0:
             return False
         return self._heard_ns is None or (now_ns - self._heard_ns) / NANOSECONDS_PER_SECOND > self.timeout
@@ -53,12 +53,12 @@ class _Source:
         return self._heard_ns is None
 
     def diagnostic_line(self, state: str) -> str:
-        """Return the input's line in the diagnostics."""
+        """Return the text about the input in the diagnostics."""
         return f" {state} (listening to {self.topic} @ {self.timeout:f}s with priority #{self.priority})"
 
 
 class TwistMux(SingleNode):
-    """The running node.
+    """The running twist_mux.
 
     Parameters: ``topics.NAME`` and ``locks.NAME`` with ``topic``, ``timeout`` (s, 0 for never) and ``priority`` (0 to
     255), and ``use_stamped`` to receive and publish TwistStamped.

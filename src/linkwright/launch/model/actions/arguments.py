@@ -44,13 +44,13 @@ def _listed_choices(entity: Entity) -> list[str] | None:
 class DeclareLaunchArgument(Action):
     """Declares an argument.
 
-    The launch configuration with its name is set to the given or default value.
+    The launch configuration with the argument's name is set to the given or default value.
 
     Args:
         name: the argument's name.
         default_value: the default; None makes the argument required.
         description: the description for ``--show-args``.
-        choices: the allowed values.
+        choices: the allowed values; None allows any value.
     """
 
     def __init__(
@@ -143,7 +143,7 @@ class DeclareLaunchArgument(Action):
         return f"{type(self).__name__}('{self._name}'{default}, description='{self.description}')"
 
     def execute(self, context: LaunchContext) -> None:
-        """Set the launch configuration to the default if it is not set, and check its value.
+        """Set the launch configuration to the default if it has no value, and check the value.
 
         Raises:
             RuntimeError: LAUNCH112, the value is not one of the choices; LAUNCH114, a required argument is missing.

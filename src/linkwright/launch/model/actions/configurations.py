@@ -41,7 +41,7 @@ class UnsetLaunchConfiguration(NamedAction):
 class PushLaunchConfigurations(Action):
     """Opens a scope of launch configurations.
 
-    `PopLaunchConfigurations` undoes the changes made in it.
+    `PopLaunchConfigurations` undoes the changes made in the scope.
     """
 
     def execute(self, context: LaunchContext) -> None:
@@ -50,7 +50,7 @@ class PushLaunchConfigurations(Action):
 
 
 class PopLaunchConfigurations(Action):
-    """Closes a scope, and restores the launch configurations from before it."""
+    """Closes a scope, and restores the launch configurations to their values before the scope."""
 
     def execute(self, context: LaunchContext) -> None:
         """Close the scope."""
@@ -59,7 +59,7 @@ class PopLaunchConfigurations(Action):
 
 @expose_action("reset")
 class ResetLaunchConfigurations(Action):
-    """Removes all launch configurations except the given ones.
+    """Removes all launch configurations, and then sets the given ones.
 
     Args:
         launch_configurations: name -> value to set afterwards; evaluated before the existing configurations are

@@ -55,7 +55,7 @@ class AppendEnvironmentVariable(AssigningAction):
         name: the name of the variable.
         value: the value to add.
         prepend: whether to insert the value before the existing ones.
-        separator: the separator; the system's path separator by default.
+        separator: the separator between the values; the system's path separator by default.
     """
 
     def __init__(
@@ -81,7 +81,7 @@ class AppendEnvironmentVariable(AssigningAction):
 
     @property
     def prepend(self) -> Any:
-        """Whether to insert the value before the existing ones: a boolean or substitutions."""
+        """A boolean or substitutions that tell whether to insert the value before the existing ones."""
         return self._prepend
 
     @property
@@ -130,7 +130,10 @@ class ReplaceEnvironmentVariables(Action):
 
 @expose_action("push_env")
 class PushEnvironment(Action):
-    """Opens a scope of environment variables; `PopEnvironment` undoes the changes made in it."""
+    """Opens a scope of environment variables.
+
+    `PopEnvironment` undoes the changes made in the scope.
+    """
 
     def execute(self, context: LaunchContext) -> None:
         """Open the scope."""
@@ -139,7 +142,7 @@ class PushEnvironment(Action):
 
 @expose_action("pop_env")
 class PopEnvironment(Action):
-    """Closes a scope, and restores the environment from before it."""
+    """Closes a scope, and restores the environment variables to their values before the scope."""
 
     def execute(self, context: LaunchContext) -> None:
         """Close the scope."""

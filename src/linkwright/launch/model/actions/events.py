@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class _HandlerAction(Action):
-    """The base class of actions on an event handler."""
+    """The base class of actions that register or unregister an event handler."""
 
     def __init__(self, event_handler: BaseEventHandler, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -93,7 +93,7 @@ class EmitEvent(Action):
 class Shutdown(EmitEvent):
     """Shuts the launch down.
 
-    Used as ``on_exit`` of a process, it also logs the name of the process.
+    In ``on_exit`` of a process, this action also logs the name of the process.
     """
 
     def __init__(self, *, reason: SomeSubstitutionsType = "reason not given", **kwargs: Any) -> None:
@@ -103,7 +103,7 @@ class Shutdown(EmitEvent):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Read ``reason``."""
+        """Read the attribute ``reason``."""
         _, kwargs = super().parse(entity, parser)
         reason = entity.get_attr("reason", optional=True)
         if reason:

@@ -1,6 +1,6 @@
 """The program of a process (``launch.descriptions.Executable``).
 
-It has a command, environment, folder and name.
+The program has a command, an environment, a folder and a name.
 """
 
 from __future__ import annotations
@@ -35,11 +35,11 @@ class Executable:
         cwd: the folder in which the program runs.
         env: the entire environment; the launcher's by default.
         additional_env: additional environment variables.
-        arguments: further arguments.
+        arguments: arguments to append to `cmd`.
 
     Attributes:
         final_name: the evaluated name in the log, such as ``talker-1``.
-        final_cmd: the evaluated words of the command.
+        final_cmd: the evaluated command as a list of arguments.
         final_cwd: the evaluated folder.
         final_env: the evaluated environment.
     """
@@ -79,7 +79,7 @@ class Executable:
     apply_context = prepare
 
     def prefix_words(self, context: LaunchContext, command: list[str]) -> list[str]:
-        """Return the words of the command prefix."""
+        """Return the arguments of the command prefix; empty if there is none."""
         if self.prefix is not None:
             return shlex.split(perform_substitutions(context, self.prefix))
         wanted = context.launch_configurations.get("launch-prefix", "")

@@ -123,17 +123,17 @@ class ExecuteLocal(Action):
 
     @property
     def emulate_tty(self) -> Any:
-        """Whether the process gets a pseudo-terminal, as given."""
+        """The given value of `emulate_tty`: a boolean or substitutions."""
         return self._emulate_tty
 
     @property
     def sigterm_timeout(self) -> list[Substitution]:
-        """Seconds between SIGINT and SIGTERM, as substitutions."""
+        """The seconds between SIGINT and SIGTERM, as substitutions."""
         return self._sigterm_timeout
 
     @property
     def sigkill_timeout(self) -> list[Substitution]:
-        """Seconds between SIGTERM and SIGKILL, as substitutions."""
+        """The seconds between SIGTERM and SIGKILL, as substitutions."""
         return self._sigkill_timeout
 
     @property
@@ -142,19 +142,27 @@ class ExecuteLocal(Action):
         return self._output
 
     def get_stdout(self) -> str:
-        """Return the output of the process to stdout; requires ``cached_output``."""
+        """Return the text that the process has written to stdout.
+
+        Raises:
+            RuntimeError: `cached_output` was not set.
+        """
         return self._cached_text(1)
 
     def get_stderr(self) -> str:
-        """Return the output of the process to stderr; requires ``cached_output``."""
+        """Return the text that the process has written to stderr.
+
+        Raises:
+            RuntimeError: `cached_output` was not set.
+        """
         return self._cached_text(2)
 
     def get_sub_entities(self) -> Sequence[LaunchDescriptionEntity]:
-        """Return the entities to visit when the process has ended."""
+        """Return the entities to visit when the process has ended, if they are known."""
         return self._on_exit
 
     def describe(self) -> str:
-        """Return a text with the command, folder, environment and use of a shell."""
+        """Return a text with the command, folder and environment, and whether a shell is used."""
         about = self._description
         command = ", ".join(describe(part) for part in about.cmd)
         folder = None if about.cwd is None else describe(about.cwd)
@@ -165,10 +173,7 @@ class ExecuteLocal(Action):
     # --- execution ------------------------------------------------------------------------------------------
 
     def prepare(self, context: LaunchContext) -> None:
-        """Evaluate the name, command, folder and environment.
-
-        Users may read them before the process runs.
-        """
+        """Evaluate the name, command, folder and environment, so that users can read them before the start."""
         self._description.prepare(context, self)
 
     def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity] | None:
@@ -183,19 +188,19 @@ class ExecuteLocal(Action):
         return None
 
     def exited(self, event: events.ProcessExited, context: LaunchContext) -> list[LaunchDescriptionEntity]:
-        """Return the entities to visit when the process has ended."""
+        """Record the exit status, and return the entities to visit next."""
         self.return_code = event.returncode
         if self._after_exit is None:
             return self._on_exit
         return as_entities(self._after_exit(event, context))
 
     def wrote(self, stream: int, text: bytes) -> None:
-        """Store output that the process wrote to stdout (1) or stderr (2)."""
+        """Store output that the process wrote to stdout (1) or stderr (2), if `cached_output` is set."""
         if self._cached is not None:
             self._cached[stream].append(text)
 
     def _start(self, context: LaunchContext, command: list[str]) -> str:
-        """Start a process with a command, and return its name in the log."""
+        """Start the process with an evaluated command, and return the name of the process in the log."""
         if self._started:
             text = f"ExecuteLocal action '{self._description.final_name}': executed more than once: {self.describe()}"
             message = phrase(
@@ -297,7 +302,7 @@ class ExecuteLocal(Action):
 
 @expose_action("executable")
 class ExecuteProcess(ExecuteLocal):
-    """Starts a process from a command and monitors it until it ends.
+    """Starts a process from a command and monitors the process until it ends.
 
     Args:
         cmd: program and arguments, see `Executable`.
@@ -327,7 +332,7 @@ class ExecuteProcess(ExecuteLocal):
     def parse(
         cls, entity: Entity, parser: Parser, ignore: Sequence[str] | None = None
     ) -> tuple[type[Action], dict[str, Any]]:
-        """Read the tag of a process.
+        """Return the class and keyword arguments for the tag of a process.
 
         Args:
             entity: the tag.
@@ -342,7 +347,10 @@ class ExecuteProcess(ExecuteLocal):
 
     @classmethod
     def _parse_cmdline(cls, cmd: str, parser: Parser) -> list[list[Substitution]]:
-        """Return the words of a command line; the method has its name in ROS."""
+        """Return the arguments of a command line, each as substitutions.
+
+        The method has its name in ROS.
+        """
         from linkwright.launch.model.markup.command_line import parse_command_line
 
         return parse_command_line(cmd, parser)
@@ -362,9 +370,10 @@ class ExecuteProcess(ExecuteLocal):
         return None
 
     def _is_replaced(self, context: LaunchContext, command: list[str]) -> bool:
-        """Start the node that replaces the command, if there is one.
+        """Start the Linkwright node that replaces the command, if there is one.
 
-        Return whether it was started.
+        Returns:
+            Whether a node was started.
         """
         from linkwright.launch.model.replaced_programs import replacing_node
 
@@ -394,30 +403,36 @@ class ExecuteProcess(ExecuteLocal):
 
     @property
     def cmd(self) -> list[list[Substitution]]:
-        """Program and arguments, as substitutions."""
+        """The program and its arguments, as substitutions."""
         return self._description.cmd
 
     @property
     def name(self) -> Any:
-        """The process's name in the log, such as ``talker-1``.
+        """The name of the process in the log, such as ``talker-1``.
 
-        It is given as substitutions until it is evaluated.
+        The property contains substitutions until the name is evaluated.
         """
         return self._description.final_name or self._description.name
 
     @property
     def cwd(self) -> Any:
-        """The folder in which the process runs; substitutions until the folder is evaluated."""
+        """The folder in which the process runs.
+
+        The property contains substitutions until the folder is evaluated.
+        """
         return self._description.final_cwd or self._description.cwd
 
     @property
     def env(self) -> Any:
-        """The environment of the process; substitutions until the environment is evaluated."""
+        """The environment of the process.
+
+        The property contains substitutions until the environment is evaluated.
+        """
         return self._description.final_env or self._description.env
 
     @property
     def additional_env(self) -> Pairs | None:
-        """The additional variables, as substitutions."""
+        """The additional environment variables, as substitutions."""
         return self._description.additional_env
 
     @property

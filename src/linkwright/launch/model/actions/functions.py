@@ -46,7 +46,9 @@ class OpaqueFunction(Action):
 
 
 class OpaqueCoroutine(Action):
-    """Starts a coroutine; the launch waits for it to finish, and a shutdown cancels it.
+    """Starts a coroutine.
+
+    The launch waits for the coroutine to finish, and a shutdown cancels it.
 
     Args:
         coroutine: called as ``coroutine(context, *args, **kwargs)``.
@@ -92,5 +94,5 @@ class OpaqueCoroutine(Action):
             task.cancel()
 
     def get_asyncio_future(self) -> asyncio.Future[Any] | None:
-        """Return the coroutine's task, or None before it is started."""
+        """Return the coroutine's task, or None if the coroutine is not started yet."""
         return self._task

@@ -30,7 +30,7 @@ class GroupAction(Action):
 
     Args:
         actions: the actions of the group.
-        scoped: whether changes to launch configurations and environment variables inside end with the group.
+        scoped: whether changes to launch configurations and environment variables are undone after the group.
         forwarding: whether a scoped group sees the launch configurations and environment variables from outside.
         launch_configurations: name -> value of configurations to set in the group.
     """
@@ -67,7 +67,8 @@ class GroupAction(Action):
 
     def get_sub_entities(self) -> list[LaunchDescriptionEntity]:
         """Return the actions of the group, with the actions that open and close its scope."""
-        # Users' classes set the attribute '_GroupAction__actions', its name in ROS, in 'execute', so check for changes.
+        # Users' classes set '_GroupAction__actions' (its name in ROS) in 'execute', so build the list again after a
+        # change.
         if self.__following is None or self.__following[0] is not self.__actions:
             self.__following = self.__actions, self._with_scope()
         return self.__following[1]

@@ -68,7 +68,7 @@ class Log(Action):
                     warnings.warn(problem, stacklevel=2)
                 else:
                     warnings.warn_explicit(problem, UserWarning, place.file, place.span().line)
-                return LogInfo, kwargs  # Jazzy and earlier log such a tag at this level
+                return LogInfo, kwargs  # Jazzy and earlier log this tag at level INFO
             level = "INFO"
         kwargs["level"] = parser.parse_substitution(level)
         return cls, kwargs
@@ -130,7 +130,7 @@ class LogInfo(_LogOfLevel):
 
 @expose_action("log_debug")
 class LogDebug(_LogOfLevel):
-    """Writes a debug line, which is shown with ``--debug``."""
+    """Writes a debug line, which is shown only with ``--debug``."""
 
     _LEVEL = "DEBUG"
 
@@ -144,6 +144,9 @@ class LogWarning(_LogOfLevel):
 
 @expose_action("log_error")
 class LogError(_LogOfLevel):
-    """Writes an error; the launch continues."""
+    """Writes an error.
+
+    The launch continues.
+    """
 
     _LEVEL = "ERROR"

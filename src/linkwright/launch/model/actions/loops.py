@@ -28,9 +28,7 @@ if TYPE_CHECKING:
 
 @expose_action("for_each")
 class ForEach(Action):
-    """Calls a function for each of several sets of values.
-
-    The entities that it returns are visited.
+    """Calls a function for each of several sets of values, and visits the entities that it returns.
 
     Args:
         input_values: the sets, each a YAML mapping in braces, separated by semicolons.
@@ -68,7 +66,7 @@ class ForEach(Action):
         return f"{type(self).__name__}(input_values={describe(self._input_values)}, function={_name(self._function)})"
 
     def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity]:
-        """Return the entities for all sets, to be visited next.
+        """Return the entities for all sets of values, to be visited next.
 
         Raises:
             LinkwrightError: LAUNCH151, a set is not a mapping.
@@ -97,12 +95,12 @@ class ForEach(Action):
 
 @expose_action("for")
 class ForLoop(Action):
-    """Calls a function for each index from 0, and visits the entities that it returns.
+    """Calls a function for each index from 0, and visits the entities that the function returns.
 
     Args:
         length: the number of iterations.
-        function: called with the index as ``i``; returns entities.
-        name: the name for ``$(index NAME)``, which returns the index.
+        function: called with the index as the keyword argument ``i``; returns entities.
+        name: the name of the index in ``$(index NAME)``.
     """
 
     def __init__(
@@ -164,9 +162,9 @@ def _name(function: Callable[..., Any]) -> str:
 
 
 def iteration(children: Sequence[LaunchDescriptionEntity], values: Mapping[str, Any]) -> list[LaunchDescriptionEntity]:
-    """Return the actions of an iteration of a loop.
+    """Return the actions of one iteration of a loop.
 
-    In them, ``$(for-var NAME)`` and ``$(index NAME)`` give the values of the iteration.
+    In these actions, ``$(for-var NAME)`` and ``$(index NAME)`` return the values of the iteration.
     """
 
     def begin(context: LaunchContext) -> None:
@@ -178,7 +176,8 @@ def iteration(children: Sequence[LaunchDescriptionEntity], values: Mapping[str, 
     def leave(context: LaunchContext) -> None:
         context.pop_locals()
 
-    # There are three functions, as in ROS, because users count the entities of a loop. The children are copied, because
-    # an action such as a node keeps its state.
+    # As in ROS, the scope takes three actions, because users count the entities of a loop. The children are copied for
+    # each
+    # iteration, because an action such as a node has state.
     around = [OpaqueFunction(function=step) for step in (begin, enter, leave)]
     return [*around[:2], *deepcopy(list(children)), around[2]]

@@ -36,7 +36,7 @@ class NamedAction(Action):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Read ``name``."""
+        """Read the attribute ``name``."""
         _, kwargs = super().parse(entity, parser)
         kwargs["name"] = parser.parse_substitution(entity.get_attr("name"))
         return cls, kwargs
@@ -64,7 +64,7 @@ class AssigningAction(NamedAction):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Read ``name`` and ``value``."""
+        """Read the attributes ``name`` and ``value``."""
         _, kwargs = super().parse(entity, parser)
         kwargs["value"] = parser.parse_substitution(entity.get_attr("value"))
         return cls, kwargs
@@ -84,7 +84,7 @@ class AssigningAction(NamedAction):
 
 
 def parse_pairs(entity: Entity, parser: Parser, tag: str) -> dict[Any, Any] | None:
-    """Return the names and values in child tags such as ``<env name= value=/>``."""
+    """Return the names and values in child tags such as ``<env name= value=/>``, or None if there are none."""
     inside = entity.get_attr(tag, data_type=list[Entity], optional=True)
     if inside is None:
         return None
@@ -98,7 +98,7 @@ def parse_pairs(entity: Entity, parser: Parser, tag: str) -> dict[Any, Any] | No
 
 
 def normalize_pairs(values: Any) -> Pairs:
-    """Convert a mapping, or pairs of names and values, to pairs of substitutions."""
+    """Convert a mapping, or pairs of names and values, to pairs of substitution lists."""
     pairs: Iterable[Any] = values.items() if hasattr(values, "items") else values
     return [
         (normalize_to_list_of_substitutions(name), normalize_to_list_of_substitutions(value)) for name, value in pairs

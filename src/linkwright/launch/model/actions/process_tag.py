@@ -30,7 +30,7 @@ def parse_process(entity: Entity, parser: Parser, ignored: frozenset[str]) -> di
     Raises:
         AttributeError: LAUNCH117, the tag has no ``cmd``.
         TypeError: LAUNCH118, an attribute has the wrong type.
-        ValueError: LAUNCH118, a value is invalid.
+        ValueError: LAUNCH118, the value of an attribute is invalid.
     """
     kwargs: dict[str, Any] = {}
     if "cmd" not in ignored:
@@ -67,7 +67,7 @@ def parse_process(entity: Entity, parser: Parser, ignored: frozenset[str]) -> di
 
 
 def _as_text(argument: str) -> dict[str, Any]:
-    """Return the type options to read an argument as text.
+    """Return the options of `get_attr` for an argument that may contain substitutions.
 
     In YAML, ``respawn`` may also be a boolean.
     """

@@ -1,6 +1,6 @@
 """The actions of ``launch_testing``, for the launch files of tests.
 
-Such a launch file can be launched like any other. ``launch_test`` runs its tests; see
+These launch files can also be launched like any other. ``launch_test`` runs the tests in them; see
 `linkwright.launch.standins.launch_testing_api`.
 """
 
@@ -25,7 +25,10 @@ if TYPE_CHECKING:
 
 @expose_action("ready_to_test")
 class ReadyToTest(Action):
-    """Signals that tests may start; has no effect outside of tests."""
+    """Signals that tests may start.
+
+    Outside of tests, this action has no effect.
+    """
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -36,7 +39,7 @@ class ReadyToTest(Action):
         self._callbacks.append(callback)
 
     def execute(self, context: LaunchContext) -> None:
-        """Emit the event that signals readiness."""
+        """Call the registered functions."""
         for callback in self._callbacks:
             callback()
 
@@ -55,8 +58,8 @@ class Test(ExecuteProcess):
     """A process that is a test.
 
     Args:
-        timeout: seconds after which the test is ended.
-        kill_timeout: accepted for compatibility with ROS, where it has no effect, either.
+        timeout: seconds after which the test is ended; no limit by default.
+        kill_timeout: has no effect, as in ROS.
         kwargs: see `ExecuteProcess`.
     """
 
@@ -75,11 +78,11 @@ class Test(ExecuteProcess):
 
     @property
     def timeout(self) -> Any:
-        """The timeout in seconds, as given."""
+        """The timeout as given: seconds, substitutions or None."""
         return self._timeout
 
     def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity] | None:
-        """Start the test and its timeout timer."""
+        """Start the test, and return the entities to visit next, such as the timeout timer."""
         entities = list(super().execute(context) or ())
         if self._timeout is not None:
             end = EmitEvent(event=events.ShutdownProcess(process_matcher=events.matches_action(self)))

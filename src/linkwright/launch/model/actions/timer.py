@@ -71,7 +71,7 @@ class TimerAction(Action):
         return f"{type(self).__name__}(period={self._period}, actions=<actions>)"
 
     def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
-        """Return an empty list, because the actions depend on the timer."""
+        """Return an empty list, because the actions are visited only after the period."""
         return []
 
     def describe_conditional_sub_entities(self) -> list[tuple[str, Iterable[LaunchDescriptionEntity]]]:
@@ -83,7 +83,10 @@ class TimerAction(Action):
         return self._actions
 
     def cancel(self) -> None:
-        """Cancel the timer; has no effect once the period has passed."""
+        """Cancel the timer.
+
+        This method has no effect once the period has passed.
+        """
         self._canceled = True
         if self._cancel is not None:
             self._cancel()
@@ -108,12 +111,16 @@ class TimerAction(Action):
             )
 
     def _schedule(self, context: LaunchContext) -> Schedule | None:
-        """Return the scheduler of the timer, or None to use the launch's event loop."""
+        """Return the scheduler of the timer, or None for the event loop of the launch."""
         return None
 
 
 def _number(period: Any, timer: TimerAction) -> Any:
-    """Return the period as a number if it is a literal, else unchanged."""
+    """Convert a literal period to a number, and return substitutions unchanged.
+
+    Raises:
+        LinkwrightError: LAUNCH127, the literal is not a number.
+    """
     if isinstance(period, (bool, int)):
         return float(period)
     if isinstance(period, (list, tuple)) and all(isinstance(part, str) for part in period):

@@ -1,4 +1,4 @@
-"""Command lines in XML and YAML launch files, split into words with substitutions."""
+"""Splitting of command lines with substitutions in XML and YAML launch files."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ _ESCAPED_IN_DOUBLE_QUOTES = '"\\'
 
 
 def parse_command_line(text: str, parser: Any) -> list[list[Substitution]]:
-    """Return the words of a command, each a list of substitutions to join.
+    """Split a command line into arguments, each a list of substitutions to join.
 
-    Literal spaces, quotes and backslashes have the same meaning as in a shell; characters that a substitution produces
-    do not. A quote may be opened before a substitution and closed after it.
+    Literal spaces, quotes and backslashes have the same meaning as in a shell, but not in the text that a substitution
+    produces. A quote may be opened before a substitution and closed after it.
 
     Raises:
-        ValueError: LAUNCH118, a quote is never closed.
+        ValueError: LAUNCH118, a quote is not closed.
     """
     divided = _Words()
     parts: list[Substitution] = parser.parse_substitution(text)
@@ -41,7 +41,7 @@ def parse_command_line(text: str, parser: Any) -> list[list[Substitution]]:
 
 
 class _Words:
-    """Builds words from characters and substitutions."""
+    """Splits literal text and substitutions into the arguments of a command."""
 
     def __init__(self) -> None:
         self.words: list[list[Substitution]] = []
@@ -51,13 +51,13 @@ class _Words:
         self._began = False
 
     def add_substitution(self, part: Substitution) -> None:
-        """Add a substitution to the current word."""
+        """Append a substitution to the current argument."""
         self._end_text()
         self._word.append(part)
         self._began = True
 
     def add_text(self, text: str) -> None:
-        """Add literal text, which may end the current word and start others."""
+        """Add literal text, which may end the current argument and start others."""
         characters = iter(text)
         for character in characters:
             if self.quote == character:
@@ -76,7 +76,7 @@ class _Words:
         self._end_text()
 
     def end_word(self) -> None:
-        """End the current word, if there is one."""
+        """End the current argument, if there is one."""
         self._end_text()
         if self._began:
             self.words.append(self._word or [TextSubstitution(text="")])

@@ -1,6 +1,6 @@
-"""The interfaces for functions that read tags.
+"""The interfaces that functions for reading tags use.
 
-They are the entity (an XML tag or YAML mapping) and the file's parser.
+They are `Entity`, an XML tag or YAML mapping, and `Parser`, the parser of the file.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from linkwright.launch.model.substitution import Substitution
 
 
 class Entity:
-    """An XML tag or YAML mapping, as the functions that read tags see it."""
+    """The interface of an XML tag or YAML mapping in a launch file."""
 
     @property
     def type_name(self) -> str:
@@ -45,14 +45,14 @@ class Entity:
         raise NotImplementedError
 
     def get_attr(self, name: str, *, data_type: Any = str, optional: bool = False, can_be_str: bool = True) -> Any:
-        """Return an attribute, or the child entities with a name.
+        """Return the value of an attribute, or the child entities with a name.
 
         Args:
             name: the name of the attribute.
             data_type: the type of the value (see `linkwright.launch.model.markup.values`); None applies YAML's rules,
                 and a list of `Entity` requests the child entities with that name.
             optional: whether to return None if the attribute is missing.
-            can_be_str: whether to return a string that is not of the type, because it may contain a substitution.
+            can_be_str: whether to return a string of another type, because it may contain a substitution.
 
         Raises:
             AttributeError: LAUNCH117, the attribute is missing and not optional.
@@ -63,10 +63,7 @@ class Entity:
 
 
 def is_list_of_entities(data_type: Any) -> bool:
-    """Return whether a type is a list of `Entity`.
-
-    It is ``List[Entity]`` or ``list[Entity]``, for `Entity` or a subclass of it.
-    """
+    """Return whether a type is ``List[Entity]`` or ``list[Entity]``, with `Entity` or a subclass."""
     arguments = typing.get_args(data_type)
     return (
         typing.get_origin(data_type) is list
@@ -77,7 +74,7 @@ def is_list_of_entities(data_type: Any) -> bool:
 
 
 class PlacedText(str):
-    """A string from a launch file that records its location."""
+    """A string from a launch file that has a location."""
 
     __slots__ = ("place",)
 
@@ -108,14 +105,14 @@ class Parser(Protocol):
         """Parse a text that may contain ``$(...)`` into substitutions."""
 
     def parse_if_substitutions(self, value: Any) -> Any:
-        """Parse the substitutions in the strings of a value."""
+        """Parse the substitutions in the strings of a value; strings without any are unchanged."""
 
     def escape_characters(self, value: str) -> str:
         """Return the text with its backslash escapes resolved."""
 
 
 def parse_texts(entity: Entity, parser: Parser, **attributes: str) -> dict[str, list[Substitution]]:
-    """Return keyword arguments with substitutions for attributes that the tag has.
+    """Return keyword arguments with the substitutions in the attributes that the tag has.
 
     Args:
         entity: the tag.

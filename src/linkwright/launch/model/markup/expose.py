@@ -1,4 +1,4 @@
-"""The functions that create actions from tags, and substitutions from ``$(name ...)``.
+"""The registry of functions that parse tags and substitutions ``$(name ...)``.
 
 As in ``launch.frontend``, packages register their own functions with the decorators of this module.
 """
@@ -26,7 +26,7 @@ arguments."""
 def expose_action(name: str) -> Callable[[T], T]:
     """Register a class or function for the tag `name`.
 
-    A class has a class method ``parse(entity, parser)``, and a function has the same parameters.
+    A class must have a class method ``parse(entity, parser)``. A function must have the same parameters.
     """
     return expose_impl(name, action_parse_methods, "action")
 
@@ -34,13 +34,13 @@ def expose_action(name: str) -> Callable[[T], T]:
 def expose_substitution(name: str) -> Callable[[T], T]:
     """Register a class or function for ``$(name ...)``.
 
-    A class has a class method ``parse(data)``, and a function has the same parameter.
+    A class must have a class method ``parse(data)``. A function must have the same parameter.
     """
     return expose_impl(name, substitution_parse_methods, "substitution")
 
 
 def expose_impl(name: str, parse_methods_map: dict[str, Any], exposed_type: str) -> Callable[[T], T]:
-    """Return a decorator that adds the parse function of a class, or a function, to a table.
+    """Return a decorator that registers a function, or the parse method of a class, in a table.
 
     Raises:
         RuntimeError: raised by the decorator if the object has no parse method, or the name is taken.
@@ -58,10 +58,7 @@ def expose_impl(name: str, parse_methods_map: dict[str, Any], exposed_type: str)
 
 
 def _is_same(one: Any, other: Any) -> bool:
-    """Return whether two functions are the same.
-
-    A function from two imports of its module counts as the same.
-    """
+    """Return whether two functions are the same, even if their module was imported twice."""
     return bool(one == other) or (
         (one.__module__, one.__qualname__) == (other.__module__, other.__qualname__)
         and one.__code__.co_filename == other.__code__.co_filename
@@ -82,7 +79,7 @@ def _parse_method(exposed: Any, name: str, exposed_type: str) -> Any:
 
 
 def _with_completeness_check(method: Any) -> Any:
-    """Wrap a parse function in a check that it has read the entire tag."""
+    """Wrap a parse function so that unread parts of the tag raise an error."""
 
     @functools.wraps(method)
     def parse(entity: Entity, parser: Parser) -> Any:

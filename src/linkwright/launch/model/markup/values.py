@@ -1,7 +1,7 @@
-"""Typed values from text and substitutions (``launch.utilities.type_utils``).
+"""Conversion of text and substitutions to typed values (``launch.utilities.type_utils``).
 
 The types are ``int``, ``float``, ``bool``, ``str`` and uniform lists of these, written ``List[int]`` or ``list[int]``.
-None means the type that YAML's rules determine.
+The type None means that YAML's rules determine the type.
 """
 
 from __future__ import annotations
@@ -52,10 +52,10 @@ def is_valid_scalar_type(data_type: Any) -> bool:
 
 
 def extract_type(data_type: Any) -> tuple[Any, bool]:
-    """Return the scalar type of a type, and whether the type is a list of it.
+    """Return the scalar type of a type, and whether the type is a list of that scalar type.
 
     Raises:
-        ValueError: it is any other type.
+        ValueError: the type is neither a scalar type nor a list of one.
     """
     is_list = is_typing_list(data_type) and bool(typing.get_args(data_type))
     scalar = typing.get_args(data_type)[0] if is_list else data_type
@@ -67,7 +67,7 @@ def extract_type(data_type: Any) -> tuple[Any, bool]:
 def is_instance_of_valid_type(value: Any, can_be_str: bool = False) -> bool:
     """Return whether a value has one of the allowed types.
 
-    With `can_be_str`, lists may contain strings among other items.
+    If `can_be_str` is set, lists may contain strings among other items.
     """
     if not isinstance(value, list):
         return isinstance(value, ScalarTypesTuple)
@@ -84,7 +84,7 @@ def _scalar_type(value: Any) -> type | None:
 def is_instance_of(value: Any, data_type: Any = None, can_be_str: bool = False) -> bool:
     """Return whether a value has a type.
 
-    None accepts all allowed types, and `can_be_str` additionally accepts strings.
+    The type None accepts all allowed types. If `can_be_str` is set, strings are also accepted.
 
     Raises:
         ValueError: the type is not allowed.
@@ -104,12 +104,12 @@ def coerce_to_type(value: str, data_type: Any = None, can_be_str: bool = False) 
     Args:
         value: the string.
         data_type: the type; None applies YAML's rules.
-        can_be_str: whether to return a string unchanged if it is not of the type, because it may contain a
+        can_be_str: whether to return a string unchanged if it cannot be converted, because it may contain a
             substitution.
 
     Raises:
         TypeError: the value is not a string.
-        ValueError: the string is not of the type, or the type is not allowed.
+        ValueError: the string cannot be converted, or the type is not allowed.
     """
     if not isinstance(value, str):
         raise TypeError(f"expected 'value' to be of type '{str}', but got {value!r} of type {type(value)}")
@@ -161,7 +161,12 @@ def _by_yaml(value: str, problem: str, can_be_str: bool) -> Any:
 
 
 def coerce_list(value: list[str], data_type: Any = None, can_be_str: bool = False) -> list[Any]:
-    """Convert a list of strings to a uniform list of a scalar type; see `coerce_to_type`."""
+    """Convert a list of strings to a uniform list of a scalar type; see `coerce_to_type`.
+
+    Raises:
+        TypeError: the value is not a list of strings.
+        ValueError: a string cannot be converted, the list is not uniform, or the type is not allowed.
+    """
     if not isinstance(value, list):
         raise TypeError(f"expected 'value' to be of type '{list}', but got {value!r} of type {type(value)}")
     made = [coerce_to_type(item, data_type, can_be_str=can_be_str) for item in value]
@@ -176,7 +181,7 @@ def get_typed_value(value: str | list[str], data_type: Any = None, can_be_str: b
     Raises:
         TypeError: a list is given for a type that is not a list, or the value is neither a string nor a list of
             strings.
-        ValueError: the value is not of the type.
+        ValueError: the value cannot be converted, or the type is not allowed.
     """
     if not isinstance(value, list):
         return coerce_to_type(value, data_type, can_be_str=can_be_str)
@@ -191,10 +196,7 @@ def get_typed_value(value: str | list[str], data_type: Any = None, can_be_str: b
 
 
 def is_substitution(value: Any) -> bool:
-    """Return whether a value is a substitution, or a list with one.
-
-    The other items of the list must be strings.
-    """
+    """Return whether a value is a substitution, or a list of strings and at least one substitution."""
     if isinstance(value, Substitution):
         return True
     if isinstance(value, str) or not isinstance(value, Iterable):
@@ -206,12 +208,12 @@ def is_substitution(value: Any) -> bool:
 
 
 def is_normalized_substitution(value: Any) -> bool:
-    """Return whether a value is a list that contains only substitutions."""
+    """Return whether a value is a non-empty list that contains only substitutions."""
     return isinstance(value, list) and bool(value) and all(isinstance(item, Substitution) for item in value)
 
 
 def read_boolean(value: Any) -> Any:
-    """Convert a string to a boolean, and return other values, such as substitutions, unchanged.
+    """Convert a string to a boolean, and return any other value unchanged.
 
     Raises:
         ValueError: the string is not a boolean.
@@ -220,9 +222,9 @@ def read_boolean(value: Any) -> Any:
 
 
 def normalize_typed_substitution(value: Any, data_type: Any) -> Any:
-    """Convert the substitutions in a value to lists of substitutions, item by item in a list.
+    """Convert the substitutions in a value or in the items of a list to lists of substitutions.
 
-    A list that can be read as a single substitution is: ``['a', TextSubstitution(text='b')]`` means ``'ab'``.
+    A list of strings and substitutions is a single value: ``['a', TextSubstitution(text='b')]`` means ``'ab'``.
 
     Raises:
         TypeError: the value can never be of the type.
@@ -247,11 +249,11 @@ def normalize_typed_substitution(value: Any, data_type: Any) -> Any:
 
 
 def perform_typed_substitution(context: Any, value: Any, data_type: Any = None) -> Any:
-    """Evaluate the result of `normalize_typed_substitution`.
+    """Evaluate the result of `normalize_typed_substitution`, and return a value of the type.
 
     Raises:
         TypeError: a plain value has another type.
-        ValueError: the evaluated text is not of the type.
+        ValueError: the evaluated text cannot be converted to the type.
     """
     if is_normalized_substitution(value):
         return coerce_to_type(perform_substitutions(context, value), data_type)

@@ -1,6 +1,6 @@
 """The substitution that runs a command.
 
-xacro runs in this process, so that errors have locations.
+xacro commands are expanded in this process, so that their errors have locations.
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
     """The standard output of a command.
 
     Args:
-        command: program and arguments, as in a shell.
+        command: program and arguments, quoted as in a shell.
         on_stderr: the reaction to output on stderr: ``fail`` (the default), ``warn``, ``ignore`` or ``capture`` (append
-            it to stdout).
+            the output to the result).
     """
 
     command: Texts = Texts()
@@ -53,7 +53,7 @@ class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
 
         Raises:
             DescriptionError: the command is xacro, and the model has errors.
-            LinkwrightError: LAUNCH128 or LAUNCH129, the command cannot be run or fails.
+            LinkwrightError: LAUNCH128 or LAUNCH129, the command is invalid, cannot be run or fails.
         """
         text = perform_substitutions(context, self.command)
         try:
@@ -131,7 +131,7 @@ class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
 
 
 def _words_of_xacro(words: list[str]) -> list[str] | None:
-    """Return the arguments of ``xacro`` if the command runs it, else None."""
+    """Return the arguments of a ``xacro`` command, or None if the command runs another program."""
     if words[:3] == ["ros2", "run", "xacro"] and words[3:4] == ["xacro"]:
         return words[4:]
     if Path(words[0]).name == "xacro":

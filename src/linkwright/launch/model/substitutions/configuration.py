@@ -1,6 +1,6 @@
 """Substitutions that read the launch context.
 
-They return configurations, the environment, and the launch file's own path.
+They evaluate to launch configurations, environment variables, locals and paths of the launch.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ _NOT_IN_NAMES = str.maketrans(".-:", "___")
 
 
 def default_texts(given: Any) -> list[Substitution]:
-    """Convert a default, whose parts may also be numbers and booleans, to substitutions."""
+    """Convert a default to substitutions; its parts may also be numbers and booleans."""
     parts = given if isinstance(given, (list, tuple)) else [given]
     return normalize_to_list_of_substitutions([part if isinstance(part, Substitution) else str(part) for part in parts])
 
@@ -44,7 +44,7 @@ class LaunchConfiguration(DeclaredSubstitution, tag="var", shown="LaunchConfig({
 
     Args:
         variable_name: the name of the launch configuration.
-        default: the text if the configuration is not set; with None, that is an error.
+        default: the text if the configuration is not set; None makes an unset configuration an error.
     """
 
     variable_name: Texts = Texts()
@@ -80,7 +80,7 @@ class EnvironmentVariable(DeclaredSubstitution, tag="env", shown="EnvVar({name})
 
     Args:
         name: the name of the variable.
-        default_value: the text if the variable is not set; with None, that is an error.
+        default_value: the text if the variable is not set; None makes an unset variable an error.
     """
 
     name: Texts = Texts()
@@ -109,10 +109,7 @@ class EnvironmentVariable(DeclaredSubstitution, tag="env", shown="EnvVar({name})
 
 
 class LocalSubstitution(Substitution):
-    """The value of a local of the launch context.
-
-    It is given by an expression such as ``event.reason``.
-    """
+    """The value of an expression on a local of the launch context, such as ``event.reason``."""
 
     def __init__(self, expression: str, description: str | None = None) -> None:
         self.expression = expression
@@ -126,7 +123,7 @@ class LocalSubstitution(Substitution):
         """Return the value as text.
 
         Raises:
-            SubstitutionFailure: LAUNCH123, there is no such local at this point.
+            SubstitutionFailure: LAUNCH123, the local does not exist when the substitution is evaluated.
         """
         known = context.get_locals_as_dict()
         first, *rest = self.expression.split(".")
@@ -168,7 +165,10 @@ class ThisLaunchFile(DeclaredSubstitution, tag="filename"):
 
 
 class ThisLaunchFileDir(DeclaredSubstitution, tag="dirname"):
-    """The folder of the launch file that is being visited; the operator ``/`` appends a path."""
+    """The folder of the launch file that is being visited.
+
+    The operator ``/`` appends a path.
+    """
 
     def __truediv__(self, other: SomeSubstitutionsType) -> Any:
         from linkwright.launch.model.substitutions.paths import PathJoinSubstitution
@@ -189,7 +189,7 @@ class ThisLaunchFileDir(DeclaredSubstitution, tag="dirname"):
 
 
 class LaunchLogDir(DeclaredSubstitution, tag="launch_log_dir/log_dir"):
-    """The folder in which this launch writes its log."""
+    """The folder of the launch's log files."""
 
     def perform(self, context: LaunchContext) -> str:
         """Return the path of the folder."""
@@ -197,7 +197,10 @@ class LaunchLogDir(DeclaredSubstitution, tag="launch_log_dir/log_dir"):
 
 
 class AnonName(DeclaredSubstitution, tag=_ANONYMOUS):
-    """A name made unique by host name and numbers, which stays the same within a launch."""
+    """A name made unique by the host name, the process ID and a random number.
+
+    The same name evaluates to the same text within a launch.
+    """
 
     name: Texts = Texts()
 

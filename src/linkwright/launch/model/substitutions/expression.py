@@ -26,8 +26,8 @@ class PythonExpression(DeclaredSubstitution, tag="eval"):
 
     Args:
         expression: the expression.
-        python_modules: the modules that the expression may use; by default ``math``, whose members can be used without
-            the module name, too.
+        python_modules: the modules that the expression may use; by default ``math``, whose members can also be used
+            without the module name.
     """
 
     expression: Texts = Texts()
@@ -37,7 +37,7 @@ class PythonExpression(DeclaredSubstitution, tag="eval"):
     def parse(cls, data: Sequence[Any]) -> tuple[Any, dict[str, Any]]:
         """Return the class and its keyword arguments for an expression and optional modules.
 
-        The modules are separated by commas.
+        The names of the modules are separated by commas.
 
         Raises:
             TypeError: the number of arguments is wrong.
@@ -60,7 +60,7 @@ class PythonExpression(DeclaredSubstitution, tag="eval"):
     def perform(self, context: LaunchContext) -> str:
         """Evaluate the expression, and return its value as text.
 
-        The expression runs with all the rights of its launch file, which is a program anyway.
+        The expression runs unrestricted, like the launch file that contains it.
 
         Raises:
             Exception: LAUNCH126, with the class and text of Python's exception.

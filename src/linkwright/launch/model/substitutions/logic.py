@@ -29,10 +29,7 @@ _WORDS = {"true": True, "1": True, "false": False, "0": False}
 
 
 def _operand(value: Any) -> list[Substitution]:
-    """Convert an operand of a comparison to substitutions.
-
-    The operand may also be a number, a boolean or None.
-    """
+    """Convert an operand of a comparison to substitutions; it may also be a number, boolean or None."""
     if value is None:
         value = ""
     if isinstance(value, (bool, int, float)):
@@ -41,7 +38,7 @@ def _operand(value: Any) -> list[Substitution]:
 
 
 class EqualsSubstitution(DeclaredSubstitution, tag="equals"):
-    """Whether two texts are equal, as ``true`` or ``false``.
+    """A comparison that evaluates to ``true`` if two texts are equal, else to ``false``.
 
     Numbers and booleans are compared by value.
     """
@@ -66,7 +63,7 @@ class EqualsSubstitution(DeclaredSubstitution, tag="equals"):
 
 
 class NotEqualsSubstitution(EqualsSubstitution, tag="not-equals"):
-    """Whether two texts differ, as ``true`` or ``false``."""
+    """A comparison that evaluates to ``true`` if two texts differ, else to ``false``."""
 
     def perform(self, context: LaunchContext) -> str:
         """Return ``true`` if the texts differ, else ``false``."""
@@ -74,7 +71,7 @@ class NotEqualsSubstitution(EqualsSubstitution, tag="not-equals"):
 
 
 class NotSubstitution(DeclaredSubstitution, tag="not", shown="NotSubstitution({value})"):
-    """The negation of a boolean, as ``true`` or ``false``."""
+    """The negation of a boolean, which evaluates to ``true`` or ``false``."""
 
     value: Texts = Texts()
 
@@ -84,7 +81,7 @@ class NotSubstitution(DeclaredSubstitution, tag="not", shown="NotSubstitution({v
 
 
 class AndSubstitution(DeclaredSubstitution, tag="and"):
-    """Whether two values are both true, as ``true`` or ``false``."""
+    """The conjunction of two booleans, which evaluates to ``true`` or ``false``."""
 
     left: Texts = Texts()
     right: Texts = Texts()
@@ -98,7 +95,7 @@ class AndSubstitution(DeclaredSubstitution, tag="and"):
 
 
 class OrSubstitution(AndSubstitution, tag="or"):
-    """Whether at least one of two values is true, as ``true`` or ``false``."""
+    """The disjunction of two booleans, which evaluates to ``true`` or ``false``."""
 
     def perform(self, context: LaunchContext) -> str:
         """Return ``true`` if at least one value is true, else ``false``."""
@@ -137,7 +134,7 @@ expose_substitution("all")(_parsed_all)
 
 
 class AnySubstitution(_ManyValues):
-    """Whether any of several values is true, as ``true`` or ``false``."""
+    """The disjunction of several booleans, which evaluates to ``true`` or ``false``."""
 
     def perform(self, context: LaunchContext) -> str:
         """Return ``true`` if any value is true, else ``false``."""
@@ -145,7 +142,7 @@ class AnySubstitution(_ManyValues):
 
 
 class AllSubstitution(_ManyValues):
-    """Whether all of several values are true, as ``true`` or ``false``."""
+    """The conjunction of several booleans, which evaluates to ``true`` or ``false``."""
 
     def perform(self, context: LaunchContext) -> str:
         """Return ``true`` if all values are true, else ``false``."""

@@ -30,7 +30,7 @@ class ForEachVar(DeclaredSubstitution, tag="for-var", shown="{kind}(name={name},
 
     Args:
         name: the name of the value.
-        default_value: the text if the iteration has no such value; with None, that is an error.
+        default_value: the text if the iteration has no such value; None makes a missing value an error.
     """
 
     name: Texts = Texts()
@@ -69,7 +69,7 @@ class ForEachVar(DeclaredSubstitution, tag="for-var", shown="{kind}(name={name},
 
 
 class ForLoopIndex(ForEachVar, tag="index"):
-    """The index of the current iteration of the `ForLoop` with a name."""
+    """The current index of the `ForLoop` with a name."""
 
     def __init__(self, name: SomeSubstitutionsType, **_: Any) -> None:
         super().__init__(name)

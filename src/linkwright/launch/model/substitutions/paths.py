@@ -32,7 +32,10 @@ _LAUNCH_SUFFIXES = (".py", ".xml", ".yaml")
 
 
 class PathSubstitution(DeclaredSubstitution, shown="Path({path})"):
-    """A path; the operator ``/`` appends to it: ``PathSubstitution("a") / "b"``."""
+    """A path.
+
+    The operator ``/`` appends a part: ``PathSubstitution("a") / "b"``.
+    """
 
     path: Texts = Texts()
 
@@ -76,8 +79,8 @@ class PathJoinSubstitution(DeclaredSubstitution, tag="path-join", shown="PathJoi
 class FindExecutable(DeclaredSubstitution, tag="find-exec", shown="FindExec({name})"):
     """The path of a program on ``PATH``.
 
-    A program that `Command` runs in this process, or that a node of this process replaces, is found even if it is not
-    installed. In that case, the result is its bare name.
+    xacro and programs that a Linkwright node replaces need not be installed. In that case, the result is the bare name
+    of the program.
     """
 
     name: Texts = Texts(kw_only=True)
@@ -130,7 +133,7 @@ class FileContent(DeclaredSubstitution, tag="file-content"):
 
 
 class FindLaunchfile(DeclaredSubstitution, tag="find-launchfile", shown="FindLaunchfile(name={name}, path={path})"):
-    """The path of the launch file with a given name in a folder, of any kind.
+    """The path of the launch file with a given name in a folder, in any language.
 
     Args:
         name: the name of the file, or its stem without ``.launch``, ``_launch`` and the extension.
@@ -144,7 +147,7 @@ class FindLaunchfile(DeclaredSubstitution, tag="find-launchfile", shown="FindLau
         """Return the path.
 
         Raises:
-            SubstitutionFailure: LAUNCH125, there is no such file, or more than one.
+            SubstitutionFailure: LAUNCH125, there is no such file, or there are several.
         """
         name = perform_substitutions(context, self.name)
         folder = Path(perform_substitutions(context, self.path))

@@ -20,7 +20,7 @@ class StringJoinSubstitution(DeclaredSubstitution, tag="string-join", shown="Str
     """Texts joined with a delimiter between them.
 
     Args:
-        substitutions: the texts; each may consist of several substitutions.
+        substitutions: the texts, each of which may consist of several substitutions.
         delimiter: the delimiter.
     """
 
@@ -45,7 +45,7 @@ class StringJoinSubstitution(DeclaredSubstitution, tag="string-join", shown="Str
 
 
 class _OneTextSubstitution(DeclaredSubstitution):
-    """The base class of substitutions with a single text."""
+    """The base class of substitutions on a single text."""
 
     value: Texts = Texts()
 
@@ -59,7 +59,7 @@ class StringStripSubstitution(_OneTextSubstitution, tag="string-strip"):
 
 
 class IsEmptySubstitution(_OneTextSubstitution, tag="is-empty"):
-    """Whether a text is empty, as ``true`` or ``false``."""
+    """A test that evaluates to ``true`` if a text is empty, else to ``false``."""
 
     def perform(self, context: LaunchContext) -> str:
         """Return ``true`` if the text is empty, else ``false``."""
@@ -67,7 +67,7 @@ class IsEmptySubstitution(_OneTextSubstitution, tag="is-empty"):
 
 
 class NotEmptySubstitution(_OneTextSubstitution, tag="not-empty"):
-    """Whether a text is not empty, as ``true`` or ``false``."""
+    """A test that evaluates to ``true`` if a text is not empty, else to ``false``."""
 
     def perform(self, context: LaunchContext) -> str:
         """Return ``true`` if the text is not empty, else ``false``."""

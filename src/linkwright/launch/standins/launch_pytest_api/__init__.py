@@ -1,4 +1,4 @@
 """The API of ``launch_pytest``.
 
-Launches are pytest fixtures, and tests run during and after them.
+Launches are pytest fixtures. Tests run during a launch and after it.
 """

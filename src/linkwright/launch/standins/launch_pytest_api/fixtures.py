@@ -1,6 +1,6 @@
 """The fixtures of ``launch_pytest``.
 
-They provide launch descriptions for tests, with their service, context and event loop.
+The fixtures provide launch descriptions for tests, and the service, context and event loop of each launch.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ class LaunchOptions:
         fixture: the name of the fixture.
         scope: how long the launch lasts: one of pytest's scopes.
         shutdown_when_idle: whether the launch ends when it is idle.
-        auto_shutdown: whether the launch is shut down before the tests that run after it; otherwise they wait for it to
-            end.
+        auto_shutdown: whether the launch is shut down before the tests that run after it; otherwise these tests wait
+            for the launch to end.
     """
 
     fixture: str
@@ -48,15 +48,16 @@ def fixture(
 ) -> Any:
     """Decorate a function that creates a launch description for tests.
 
-    It is launched for the tests that request it. The function returns or yields a ``LaunchDescription``, or a sequence
-    whose first item is one. If a launch outlasts a test, the other fixtures of this module must last as long. They are
-    therefore added to the test's module, unless it defines its own.
+    The description is launched for the tests that request the fixture. The function returns or yields a
+    ``LaunchDescription``, or a sequence whose first item is one. If a launch lasts longer than a test, the other
+    fixtures of this module must last as long. They are therefore added to the test's module, unless that module
+    defines its own.
 
     Args:
         decorated: the function, if the decorator has no arguments.
         *args: passed to ``pytest.fixture``.
         shutdown_when_idle: whether the launch ends when it is idle.
-        auto_shutdown: whether the launch is ended once the tests that run during it are finished.
+        auto_shutdown: whether the launch is ended after the tests that run during it; otherwise it must end on its own.
         **kwargs: passed to ``pytest.fixture``; a ``scope`` that depends on the configuration is not supported.
     """
     scope = kwargs.get("scope", "function")
@@ -68,14 +69,14 @@ def fixture(
         options = LaunchOptions(name, scope, shutdown_when_idle, auto_shutdown)
         setattr(function, _OPTIONS, options)
         made: Any = pytest.fixture(*args, **kwargs)(function)
-        setattr(made, _OPTIONS, options)  # the marker receives this object, pytest's hook the function
+        setattr(made, _OPTIONS, options)  # the marker gets this object, and pytest's hook gets the function
         return made
 
     return decorate if decorated is None else decorate(decorated)
 
 
 def options_of(function: object) -> LaunchOptions | None:
-    """Return the options of a fixture that `fixture` created, or of its function.
+    """Return the launch options of a fixture that `fixture` created, or of its function.
 
     The result is None for any other object.
     """
@@ -84,9 +85,10 @@ def options_of(function: object) -> LaunchOptions | None:
 
 
 def _provide(namespace: MutableMapping[str, Any], scope: str) -> None:
-    """Add the fixtures to a module with a scope.
+    """Add the fixtures of this module to a test module with a scope.
 
-    Fixtures of the module itself, or ours with at least that scope, are kept.
+    Fixtures that the test module defines itself are not replaced. Fixtures added earlier are replaced if their scope is
+    smaller.
     """
     for name, function in _FUNCTIONS.items():
         present = namespace.get(name)
@@ -142,7 +144,7 @@ def finish(service: LaunchService, when: str, *, ask: bool = True) -> None:
     Args:
         service: the launch service.
         when: the phase, for the failure message.
-        ask: whether to shut the launch down; otherwise only wait until it ends on its own.
+        ask: whether to shut the launch down; otherwise only wait until the launch ends on its own.
 
     Raises:
         pytest.fail.Exception: something in the launch failed.

@@ -1,10 +1,10 @@
 """The pytest plugin of ``launch_pytest``.
 
-It launches the descriptions of fixtures and runs the marked tests. A test with
+The plugin launches the descriptions of fixtures and runs the marked tests. A test with
 ``@pytest.mark.launch(fixture=description)`` runs during the launch: a coroutine on the launch's event loop, a function
-in a thread. With ``shutdown=True``, it runs after the launch has ended. A generator runs up to its ``yield`` during the
-launch, and the rest after it. If the launch outlasts the test, the rest is a separate test, which runs after all tests
-that run during the launch.
+in a thread. With ``shutdown=True``, the test runs after the launch has ended. A generator runs up to its ``yield``
+during the launch, and the rest after it. If the launch outlasts the test, the rest is a separate test, which runs after
+all tests that run during the launch.
 """
 
 from __future__ import annotations
@@ -47,9 +47,9 @@ class LaunchTestWarning(pytest.PytestWarning):
 
 
 def look_up_hooks() -> None:
-    """Load the names of the stand-in ``launch_pytest.plugin``.
+    """Load the hooks of the stand-in module ``launch_pytest.plugin``.
 
-    pytest registers only hooks that a module has.
+    pytest registers only hooks that a module already contains.
     """
     module = importlib.import_module("launch_pytest.plugin")
     for name in module.__all__:
@@ -77,14 +77,18 @@ def pytest_fixture_setup(fixturedef: pytest.FixtureDef[Any], request: SubRequest
     fixturedef.addfinalizer(functools.partial(finish, service, when, ask=options.auto_shutdown))
     try:
         _launch(service, loop, _description_in(made, when), options)
-    except BaseException as error:  # other tests with the fixture get the same error
+    except BaseException as error:  # cache the error, so that other tests with the fixture fail with it
         fixturedef.cached_result = (None, fixturedef.cache_key(request), (error, error.__traceback__))
         raise
     return made
 
 
 def _description_in(made: object, when: str) -> LaunchDescription:
-    """Return the launch description in the result of a launch fixture."""
+    """Return the launch description in the value of a launch fixture.
+
+    Raises:
+        pytest.fail.Exception: the value contains no launch description.
+    """
     first = made[0] if isinstance(made, Sequence) and made else made
     if not isinstance(first, LaunchDescription):
         pytest.fail(
@@ -125,8 +129,8 @@ class LaunchTest(pytest.Function):
     Attributes:
         options: the options of the launched fixture.
         test: the test's function or bound method.
-        begun: the generator, once the part before its ``yield`` has passed.
-        first_part: the test whose generator this one continues; None for a separate test.
+        begun: the generator after the part before its ``yield`` has passed; None before that.
+        first_part: the test whose generator this test continues; None for a separate test.
     """
 
     options: LaunchOptions
@@ -145,7 +149,7 @@ class LaunchTest(pytest.Function):
             callobj=_plain(item.obj),
             fixtureinfo=item._fixtureinfo,
             keywords=item.keywords,
-            originalname=item.originalname + ending,  # newer versions of pytest use it as the identifier
+            originalname=item.originalname + ending,  # newer versions of pytest use the original name as the identifier
         )
         made.options, made.test, made.first_part = options, item.obj, first_part
         return made
@@ -158,14 +162,14 @@ class LaunchTest(pytest.Function):
 
     @property
     def launch(self) -> tuple[object, ...]:
-        """The key that is equal for tests with the same launch."""
+        """The key of the launch, which is equal for tests that run during or after the same launch."""
         kinds: dict[str, Any] = {"function": pytest.Function, "class": pytest.Class, "module": pytest.Module}
         lasting = self.getparent(kinds.get(self.options.scope, pytest.Session)) or self.getparent(pytest.Module)
         params = self.callspec.indices if hasattr(self, "callspec") else {}
         return self.options.fixture, lasting, params.get(self.options.fixture)
 
     def runtest(self) -> None:
-        """Run the test, or the part of it that this item represents."""
+        """Run the test, or the part of the test that this item represents."""
         __tracebackhide__ = True
         loop = self._loop
         given = {name: self.funcargs[name] for name in self._fixtureinfo.argnames}
@@ -222,9 +226,9 @@ def _has_parts(test: Callable[..., Any]) -> bool:
 
 
 def _plain(test: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a plain function with the test's arguments for pytest.
+    """Return a plain function with the signature of a test, for pytest to collect.
 
-    Otherwise, plugins for coroutines would run the coroutine themselves.
+    If pytest collected the coroutine function itself, plugins for coroutines would run it.
     """
 
     @functools.wraps(getattr(test, "__func__", test))
@@ -267,7 +271,7 @@ def _skipped(item: pytest.Function) -> pytest.Function:
 
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Move tests that run after a launch behind all tests that run during it."""
+    """Move tests that run after a launch behind all tests that run during this launch."""
     last = {
         item.launch: index
         for index, item in enumerate(items)

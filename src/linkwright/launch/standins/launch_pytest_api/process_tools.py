@@ -3,7 +3,7 @@
 Each function takes the launch's context, the action that runs the process, and a timeout in seconds, or None to wait
 without limit. The coroutines are for tests that run on the launch's event loop. The functions whose names end in
 ``_sync`` are for tests that run in another thread. As in ROS, a start or an exit before the call does not count: the
-functions wait for the next one. Output is available only for actions with ``cached_output=True``.
+functions wait for the next start or exit. Output is available only for actions with ``cached_output=True``.
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ _P = ParamSpec("_P")
 
 
 class _Wait:
-    """Waits for an event or for a condition.
+    """A wait for an event or for a condition.
 
     Args:
         context: the context of the launch.
         handler: creates a handler of the events, given the function that the handler calls.
         timeout: the timeout in seconds; None to wait without limit.
-        condition: the condition that must hold now or after an event; without it, the first event ends the wait.
+        condition: the condition that must hold now or after an event; None if the first event ends the wait.
         given_up: called on a timeout.
     """
 
@@ -54,7 +54,10 @@ class _Wait:
         self._happened = False
 
     async def run(self) -> Any:
-        """Wait on the launch's event loop, and return the last value of the condition."""
+        """Wait on the launch's event loop, and return the last value of the condition.
+
+        Without a condition, return whether an event occurred.
+        """
         event = asyncio.Event()
         with self._listening(event.set):
             value = self._value()
@@ -70,7 +73,10 @@ class _Wait:
         return value
 
     def run_sync(self) -> Any:
-        """Wait in a thread other than the event loop's, and return the last value of the condition."""
+        """Wait in a thread other than the event loop's, and return the last value of the condition.
+
+        Without a condition, return whether an event occurred.
+        """
         event = threading.Event()
         with self._listening(event.set):
             value = self._value()
@@ -106,14 +112,14 @@ class _Wait:
 
 
 def _remaining(deadline: float | None) -> float | None:
-    """Return the seconds until a deadline on the monotonic clock, at least 0."""
+    """Return the seconds until a deadline on the monotonic clock, at least 0, or None if there is no deadline."""
     return None if deadline is None else max(deadline - time.monotonic(), 0.0)
 
 
 def _waits(make: Callable[_P, _Wait]) -> tuple[Callable[_P, Coroutine[Any, Any, Any]], Callable[_P, Any]]:
-    """Return a coroutine function and a function that run a wait.
+    """Return a coroutine function and a function that run the wait that `make` creates.
 
-    They have the signature and docstring of `make`.
+    Both have the signature and docstring of `make`.
     """
 
     @wraps(make)
@@ -134,9 +140,9 @@ def _for_output(stream: str) -> Callable[..., _Wait]:
         validate_output: Validate,
         timeout: float | None = None,
     ) -> _Wait:
-        """Wait until `validate_output` accepts all output so far.
+        """Wait until `validate_output` returns a true value for all output so far.
 
-        It accepts by returning a true value. Return its last value.
+        Return the last value of `validate_output`.
         """
         handler, read = _output_reader(execute_process_action, stream)
         return _Wait(launch_context, handler, timeout, lambda: validate_output(read()))
@@ -153,7 +159,7 @@ def _asserting_output(stream: str) -> Callable[..., _Wait]:
     ) -> _Wait:
         """Wait until `validate_output` raises no AssertionError for all output so far.
 
-        On a timeout, it is called once more, and may raise.
+        On a timeout, `validate_output` is called once more, and its AssertionError is raised.
         """
         handler, read = _output_reader(execute_process_action, stream)
 
@@ -192,7 +198,7 @@ def _for_exit(
 
 
 def _output_reader(action: ExecuteLocal, stream: str) -> tuple[Callable[[Reaction], Handler], Callable[[], str]]:
-    """Return a factory of handlers for output, and a function that returns the output.
+    """Return a factory of handlers for output, and a function that returns the output so far.
 
     The stream is ``stdout`` or ``stderr``.
     """

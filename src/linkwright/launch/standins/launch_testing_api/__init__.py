@@ -1,4 +1,1 @@
-"""``launch_testing`` and ``launch_testing_ros``: tests during and after a launch.
-
-The tests are those of ``unittest``.
-"""
+"""The API of ``launch_testing`` and ``launch_testing_ros``: unittest tests during and after a launch."""

@@ -33,7 +33,7 @@ def assertExitCodes(
     *,
     strict_proc_matching: bool = True,
 ) -> None:
-    """Raise AssertionError unless processes ended with one of the allowed exit codes.
+    """Raise AssertionError unless all matching processes ended with one of the allowed exit codes.
 
     Args:
         proc_info: the records of exits.
@@ -62,7 +62,7 @@ def assertInStream(
     strip_ansi_escape_sequences: bool = True,
     stream: str = "stderr",
 ) -> None:
-    """Raise AssertionError unless the output of a process contains a text.
+    """Raise AssertionError unless the output of a matching process contains a text.
 
     Args:
         proc_output: the output of the processes.
@@ -71,7 +71,7 @@ def assertInStream(
         cmd_args: arguments of the process, see `resolveProcesses`.
         output_filter: a function that filters the output before the search.
         strict_proc_matching: whether a name must match only one process.
-        strip_ansi_escape_sequences: whether to remove colours before the search.
+        strip_ansi_escape_sequences: whether to remove ANSI escape sequences before the search.
         stream: ``stdout`` or ``stderr``.
 
     Raises:
@@ -101,7 +101,7 @@ def assertInStdout(
     cmd_args: str | Sequence[str] | None = None,
     **kwargs: Any,
 ) -> None:
-    """Raise AssertionError unless the standard output contains a text.
+    """Raise AssertionError unless the standard output of a matching process contains a text.
 
     See `assertInStream`.
     """
@@ -115,7 +115,7 @@ def assertInStderr(
     cmd_args: str | Sequence[str] | None = None,
     **kwargs: Any,
 ) -> None:
-    """Raise AssertionError unless the standard error contains a text.
+    """Raise AssertionError unless the standard error of a matching process contains a text.
 
     See `assertInStream`.
     """
@@ -128,7 +128,12 @@ def assertDefaultStream() -> str:
 
 
 def text_of(written: Sequence[Any], stream: str | None = None) -> str:
-    """Return the output of a process to one stream, or to both, as one text."""
+    """Return the recorded output of a process as one text.
+
+    Args:
+        written: the output events of the process.
+        stream: ``stdout`` or ``stderr``; None for both.
+    """
     kept = (event for event in written if stream is None or getattr(event, f"from_{stream}"))
     return b"".join(event.text for event in kept).decode(errors="replace")
 
@@ -149,7 +154,7 @@ def assertSequentialStdout(
 
 
 class SequentialTextChecker:
-    """Finds texts in an output in order.
+    """Finds texts in the output of a process, each after the last match.
 
     Args:
         output: the output in chunks; each text must be within a single chunk.
@@ -161,7 +166,7 @@ class SequentialTextChecker:
         self._offset = 0
 
     def assertInText(self, msg: str) -> None:
-        """Raise AssertionError unless the text follows the last match."""
+        """Raise AssertionError unless the output after the last match contains a text."""
         offset = self._offset
         for piece in range(self._piece, len(self._output)):
             at = self._output[piece].find(msg, offset)
@@ -177,7 +182,7 @@ class SequentialTextChecker:
     assertInStdout = assertInText
 
     def get_nearby_lines(self) -> str:
-        """Return the last match with two lines before and after it."""
+        """Return the lines around the last match."""
         text = "".join(self._output)
         at = sum(map(len, self._output[: self._piece])) + self._offset
         begin = at

@@ -1,6 +1,6 @@
-"""The command ``launch_test``, which runs tests during their launch.
+"""The command ``launch_test``, which runs tests during and after their launch.
 
-It is the counterpart of ``launch_testing.launch_test``.
+This module replaces ``launch_testing.launch_test``.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def parse_arguments() -> tuple[argparse.ArgumentParser, argparse.Namespace]:
-    """Parse ``sys.argv``, and return the parser of the command with the result."""
+    """Parse ``sys.argv``, and return the parser of the command and the parsed arguments."""
     parser = argparse.ArgumentParser(prog="launch_test", description="Run the tests of a file beside their launch.")
     add_arguments(parser)
     return parser, parser.parse_args()

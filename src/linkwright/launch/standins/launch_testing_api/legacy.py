@@ -1,6 +1,6 @@
 """Tests that are processes of a launch and exit with 0 (``launch_testing.legacy``).
 
-nav2 and others use such tests.
+The tests of nav2 and other projects use this module.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _OutputTest = tuple[Any, Callable[[Any, bytes], Any], Callable[[Any, Any], bool]
 class LaunchTestService:
     """Ends a launch when its tests are finished.
 
-    Running it returns the status of the first failed test.
+    `run` returns the status of the first failed test.
     """
 
     def __init__(self) -> None:
@@ -34,7 +34,7 @@ class LaunchTestService:
     ) -> _Action:
         """Add an action that the tests need.
 
-        If it is a process, an exit that is not allowed ends the launch.
+        If the action is a process, an exit that is not allowed ends the launch.
 
         Args:
             launch_description: the description to which the action is added.
@@ -56,7 +56,10 @@ class LaunchTestService:
         return action
 
     def add_test_action(self, launch_description: Any, action: _Action) -> _Action:
-        """Add a test, which passes if a process exits with 0, or if another action completes."""
+        """Add an action that is a test.
+
+        A process passes if it exits with 0. Any other action passes if it completes without an exception.
+        """
         test = f"test_{id(action)}"
 
         def on_exit(event: Any, _: Any) -> Any:
@@ -114,7 +117,7 @@ class LaunchTestService:
             return None if missing else self._passed(test, side_effect)
 
         def on_exit(*_: Any) -> Any:
-            return self._ended(test) if missing else None  # the last lines may arrive after the exit
+            return self._ended(test) if missing else None  # output may arrive after the exit
 
         def on_shutdown(*_: Any) -> None:
             if missing:
@@ -131,7 +134,7 @@ class LaunchTestService:
     def run(self, launch_service: Any, *args: Any, **kwargs: Any) -> int:
         """Run a launch service, and return its status.
 
-        If that is 0, return the status of the first failed test.
+        If this status is 0, return the status of the first failed test.
         """
         status = int(launch_service.run(*args, **kwargs))
         return status or next(iter(self._statuses), int(_FAILED in self._tests.values()))

@@ -1,4 +1,4 @@
-"""Tests of the output of a process (``launch_testing.legacy.output``); they work on bytes."""
+"""Tests of the output of a process, as bytes (``launch_testing.legacy.output``)."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ _OutputTest = tuple[bytes, Callable[[bytes, bytes], bytes], Callable[..., bool],
 
 
 def get_default_filtered_prefixes() -> list[bytes]:
-    """Return the prefixes of lines to ignore."""
+    """Return the prefixes of the lines that are ignored by default."""
     return [b"pid", b"rc"]
 
 
 def get_default_filtered_patterns() -> list[bytes]:
-    """Return the patterns of lines to ignore, which is an empty list."""
+    """Return an empty list, because no patterns of lines are ignored by default."""
     return []
 
 
@@ -43,19 +43,17 @@ def create_output_lines_filter(
 
 
 def create_output_lines_test(expected_lines: Sequence[bytes]) -> _OutputTest:
-    """Return a test that passes when each of these texts is found in a line."""
+    """Return a test that passes when each expected text occurs within a line of the output."""
     return b"", _joined, lambda output, text: any(text in line for line in output.splitlines()), expected_lines
 
 
 def create_output_regex_test(expected_patterns: Sequence[re.Pattern[bytes]]) -> _OutputTest:
-    """Return a test that passes when each of these patterns matches."""
+    """Return a test that passes when each expected pattern matches in the output."""
     return b"", _joined, lambda output, pattern: pattern.search(output) is not None, expected_patterns
 
 
 def create_output_test_from_file(output_file: str) -> _OutputTest:
-    """Return a test that is defined by a file.
-
-    It is a ``.txt`` file with lines, or a ``.regex`` file with patterns.
+    """Return a test that is defined by a ``.txt`` file with texts or a ``.regex`` file with patterns.
 
     Args:
         output_file: the path of the file without the suffix.

@@ -20,7 +20,7 @@ TIMEOUT = "__ready_to_test_action_timeout__"
 
 
 def parametrize(argnames: str, argvalues: Iterable[Any]) -> Callable[[Callable[..., Any]], Callable[[], Any]]:
-    """Decorate ``generate_test_description`` to launch it once for each of several values.
+    """Decorate ``generate_test_description`` to launch its description once for each of several values.
 
     Args:
         argnames: the names of the arguments, separated by commas.
@@ -45,7 +45,11 @@ def parametrize(argnames: str, argvalues: Iterable[Any]) -> Callable[[Callable[.
 
 
 def post_shutdown_test() -> Callable[[type[C]], type[C]]:
-    """Decorate a class of tests that run after the launch; raise TypeError if it is not a class."""
+    """Decorate a class of tests that run after the launch.
+
+    Raises:
+        TypeError: raised by the decorator if the object is not a class.
+    """
 
     def decorate(test_item: type[C]) -> type[C]:
         if not isinstance(test_item, type):
@@ -57,7 +61,7 @@ def post_shutdown_test() -> Callable[[type[C]], type[C]]:
 
 
 def ready_to_test_action_timeout(timeout: float) -> Callable[[F], F]:
-    """Decorate ``generate_test_description`` with the timeout for its `ReadyToTest`, in seconds."""
+    """Decorate ``generate_test_description`` with the timeout in seconds for its `ReadyToTest` action."""
 
     def decorate(function: F) -> F:
         setattr(function, TIMEOUT, timeout)
@@ -69,7 +73,7 @@ def ready_to_test_action_timeout(timeout: float) -> Callable[[F], F]:
 def keep_alive(test_description: F) -> F:
     """Decorate ``generate_test_description`` to keep the launch running until the tests end.
 
-    This is for launches without processes.
+    Launches without processes need this decorator.
     """
     if not hasattr(test_description, MARKERS):
         setattr(test_description, MARKERS, {})
@@ -111,7 +115,10 @@ def retry_on_failure(*, times: int, delay: float | None = None) -> Callable[[F],
 
 
 def _has_passed(test: Any) -> bool:
-    """Return whether no subtest of a test has failed; unittest has no public API for this."""
+    """Return whether no subtest of a test has failed.
+
+    unittest has no public API for this.
+    """
     outcome = test._outcome
     return outcome is None or bool(outcome.success)
 
@@ -129,7 +136,7 @@ def _forget_failures(test: Any) -> None:
 
 
 class ReadyAggregator:
-    """Calls a function once its own method `ready_fn` has been called a number of times.
+    """Calls a function after its method `ready_fn` has been called a number of times.
 
     Args:
         ready_fn: the function to call.
@@ -142,7 +149,10 @@ class ReadyAggregator:
         self._lock = threading.Lock()
 
     def ready_fn(self) -> None:
-        """Count a call; may be called from any thread."""
+        """Count a call.
+
+        This method may be called from any thread.
+        """
         with self._lock:
             self._missing -= 1
             is_last = self._missing == 0

@@ -20,7 +20,7 @@ class NoMatchingProcessException(Exception):
 
 
 class ProcessRecords(Protocol):
-    """The interface of records of processes."""
+    """The interface of records by process."""
 
     def processes(self) -> Collection[ExecuteLocal]:
         """Return the actions of the processes."""
@@ -30,7 +30,7 @@ class ProcessRecords(Protocol):
 
 
 def KeepAliveProc() -> ExecuteProcess:
-    """Return a process that does nothing, which keeps the launch from ending before the tests."""
+    """Return a process that does nothing but keeps the launch running until the tests end."""
     return ExecuteProcess(cmd=[sys.executable, "-c", _WAIT])
 
 
@@ -46,7 +46,7 @@ def resolveProcesses(
     Args:
         info_obj: the records of processes.
         process: an action, or a part of the name of a process; None for all processes.
-        cmd_args: arguments that the command must contain, in addition to a matching name; `NO_CMD_ARGS` for a command
+        cmd_args: arguments that the command must contain in addition to a matching name; `NO_CMD_ARGS` for a command
             without arguments.
         strict_proc_matching: whether a name must match only one process.
 
@@ -85,7 +85,7 @@ def resolveProcesses(
 
 
 def name_of(action: ExecuteLocal) -> str:
-    """Return the name of a process in the log, or an empty text before it has started."""
+    """Return the log name of an action's process, or an empty text if it is not known yet."""
     return str((action.process_details or {}).get("name") or action.process_description.final_name or "")
 
 
@@ -99,7 +99,7 @@ def _has_words(action: ExecuteLocal, words: Sequence[str] | None) -> bool:
 
 
 def _called(action: ExecuteLocal) -> str:
-    """Return the name and arguments of a process as text for messages."""
+    """Return the name and arguments of a process for messages."""
     details = action.process_details
     if details:
         return " ".join([details["name"], *details["cmd"][1:]])
@@ -109,6 +109,6 @@ def _called(action: ExecuteLocal) -> str:
 
 
 def _plain(parts: Iterable[Substitution]) -> str | None:
-    """Return a word of a command as plain text, or None if only the launch can evaluate it."""
+    """Return a command-line argument as plain text, or None if it contains substitutions."""
     texts = [part.text for part in parts if isinstance(part, TextSubstitution)]
     return "".join(texts) if len(texts) == len(list(parts)) else None

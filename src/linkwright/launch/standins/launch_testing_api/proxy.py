@@ -15,7 +15,7 @@ from linkwright.launch.standins.launch_testing_api.records import ActiveIoHandle
 
 
 class Outcome:
-    """The result of a wait, with the output up to that time.
+    """The result of a wait, with the output up to the end of the wait.
 
     Args:
         is_true: whether the wait was successful.
@@ -102,13 +102,14 @@ class ProcessProxy:
     def wait_for_shutdown(self, timeout: float | None = None) -> bool:
         """Wait until the process has ended, and return whether it ended in time.
 
-        The timeout is in seconds; None waits without limit.
+        Args:
+            timeout: the timeout in seconds; None to wait without limit.
         """
         with self._proc_info.proc_event:
             return self._proc_info.proc_event.wait_for(lambda: self.terminated, timeout=timeout)
 
     def wait_for_output(self, condition: Callable[[str], Any] | None = None, timeout: float | None = None) -> Outcome:
-        """Wait for output of the process, and return whether it arrived in time.
+        """Wait for output of the process, and return whether it arrived in time, with the output so far.
 
         Args:
             condition: a predicate on the entire output; if omitted, any output suffices.
@@ -148,7 +149,7 @@ def launch_process(
 ) -> Iterator[ProcessProxy]:
     """Start a process in a running launch for the duration of a context.
 
-    It is ended afterwards if it is still running.
+    If the process is still running at the end of the context, it is ended.
 
     Args:
         launch_service: the service that runs the launch.

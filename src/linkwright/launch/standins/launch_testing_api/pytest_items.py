@@ -1,7 +1,7 @@
 """The pytest plugin of ``launch_testing``.
 
-A marked file of launch tests is a single test. ``generate_test_description`` has the mark ``@pytest.mark.launch_test``,
-or ``rostest`` of launch_testing_ros.
+A marked file of launch tests is a single test for pytest. In such a file, ``generate_test_description`` has the mark
+``@pytest.mark.launch_test``, or ``@pytest.mark.rostest`` of launch_testing_ros.
 """
 
 from __future__ import annotations
@@ -56,8 +56,8 @@ class LaunchTestItem(pytest.Item):
     """All tests of a file, with their launches.
 
     Attributes:
-        load: loads the tests again, for plugins that run a test several times.
-        runner_cls: the class that runs them.
+        load: a function that loads the tests again, for plugins that run a test several times.
+        runner_cls: the class that runs the tests.
     """
 
     load: Callable[[], list[TestRun]]
@@ -72,7 +72,7 @@ class LaunchTestItem(pytest.Item):
         load: Callable[[], list[TestRun]],
         runner_cls: type[LaunchTestRunner] = LaunchTestRunner,
     ) -> LaunchTestItem:
-        """Create the item, through the interface that pytest defines."""
+        """Create the item through pytest's interface for the creation of nodes."""
         made: LaunchTestItem = super().from_parent(parent, name=name)
         made.load, made.runner_cls = load, runner_cls
         return made
@@ -117,7 +117,10 @@ class LaunchTestModule(pytest.File):
 
 
 def collect_marked(path: Path, parent: pytest.Collector) -> LaunchTestModule | None:
-    """Return the marked launch tests of a file, or None if it has none or cannot be imported."""
+    """Return a collector for a file of marked launch tests.
+
+    The result is None if the file has no such tests or cannot be imported.
+    """
     usual = pytest.Module.from_parent(parent, path=path)
     try:
         module = usual.obj

@@ -1,4 +1,4 @@
-"""An event handler for a text that a process writes (``launch_testing.event_handlers``)."""
+"""An event handler that waits for a text in the output of a process (``launch_testing.event_handlers``)."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Records of the output and exits of processes in a launch, for tests.
 
-They are the handlers of ``launch_testing``. The active handlers are for tests that run during the launch, and support
-waiting. Each contains a plain handler, which is for tests that run after the launch.
+These are the handlers of ``launch_testing``. The active handlers are for tests that run during the launch, and support
+waiting. Each active handler contains a plain handler, which is for tests that run after the launch.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from linkwright.launch.standins.launch_testing_api.processes import (
 
 
 class IoHandler:
-    """The output of processes, in order."""
+    """The output of processes in the order in which it was written."""
 
     def __init__(self) -> None:
         self._all: list[events.ProcessIO] = []
         self._by_name: dict[str, list[events.ProcessIO]] = {}
 
     def track(self, process_name: str) -> None:
-        """Register a process, which may have no output."""
+        """Register a process, even if it writes no output."""
         self._by_name.setdefault(process_name, [])
 
     def append(self, process_io: events.ProcessIO) -> None:
@@ -44,25 +44,26 @@ class IoHandler:
         return [written[0].action for written in self._by_name.values() if written]
 
     def process_names(self) -> list[str]:
-        """Return the names of all processes."""
+        """Return the names of all registered processes, with or without output."""
         return list(self._by_name)
 
     def __getitem__(self, key: str | ExecuteLocal) -> list[events.ProcessIO]:
-        """Return the output of a process, given its name or action.
+        """Return the output events of a process, given its name or action.
 
-        An unknown process raises KeyError.
+        Raises:
+            KeyError: the process is unknown.
         """
         return list(self._by_name[key if isinstance(key, str) else name_of(key)])
 
 
 class ProcInfoHandler:
-    """The last event of each process, which is its start or its exit."""
+    """The last event of each process: its start or its exit."""
 
     def __init__(self) -> None:
         self._by_action: dict[Any, events.RunningProcessEvent] = {}
 
     def append(self, process_info: events.RunningProcessEvent) -> None:
-        """Record an event of a process."""
+        """Record the start or the exit of a process."""
         self._by_action[process_info.action] = process_info
 
     def __iter__(self) -> Iterator[events.RunningProcessEvent]:
@@ -79,7 +80,8 @@ class ProcInfoHandler:
     def __getitem__(self, key: str | ExecuteLocal) -> Any:
         """Return the last event of a process, given a part of its name or its action.
 
-        An unknown process raises KeyError.
+        Raises:
+            KeyError: the process is unknown.
         """
         if not isinstance(key, str):
             return self._by_action[key]
@@ -101,7 +103,7 @@ class ActiveIoHandler:
         self._io_handler = IoHandler()
 
     def track(self, process_name: str) -> None:
-        """Register a process, which may have no output."""
+        """Register a process, even if it writes no output."""
         with self.io_event:
             self._io_handler.track(process_name)
             self.io_event.notify_all()
@@ -122,20 +124,21 @@ class ActiveIoHandler:
             return self._io_handler.processes()
 
     def process_names(self) -> list[str]:
-        """Return the names of all processes."""
+        """Return the names of all registered processes, with or without output."""
         with self.io_event:
             return self._io_handler.process_names()
 
     def __getitem__(self, key: str | ExecuteLocal) -> list[events.ProcessIO]:
-        """Return the output of a process, given its name or action.
+        """Return the output events of a process, given its name or action.
 
-        An unknown process raises KeyError.
+        Raises:
+            KeyError: the process is unknown.
         """
         with self.io_event:
             return self._io_handler[key]
 
     def assertWaitFor(self, *args: Any, **kwargs: Any) -> None:
-        """Wait for an output with `waitFor`, and raise AssertionError if it does not arrive in time."""
+        """Wait for a text in the output with `waitFor`, and raise AssertionError if it does not arrive in time."""
         if not self.waitFor(*args, **kwargs):
             raise AssertionError("Waiting for output timed out")
 
@@ -151,7 +154,7 @@ class ActiveIoHandler:
         strip_ansi_escape_sequences: bool = True,
         stream: str = "stderr",
     ) -> bool:
-        """Wait for an output, and return whether it arrived in time.
+        """Wait for a text in the output, and return whether it arrived in time.
 
         Args:
             expected_output: a text, a regular expression, or several of them in order.
@@ -160,7 +163,7 @@ class ActiveIoHandler:
             strict_proc_matching: whether a name must match only one process.
             output_filter: a function that filters the output before the search.
             timeout: the timeout in seconds; None to wait without limit.
-            strip_ansi_escape_sequences: whether to remove colours before the search.
+            strip_ansi_escape_sequences: whether to remove ANSI escape sequences before the search.
             stream: ``stdout`` or ``stderr``.
 
         Raises:
@@ -191,7 +194,7 @@ class ActiveIoHandler:
 
 
 class ActiveProcInfoHandler:
-    """The starts and exits of processes so far, with methods that wait for them.
+    """The starts and exits of processes so far, with methods that wait for a start or an exit.
 
     Attributes:
         proc_event: the condition that is notified when a process has started or ended.
@@ -202,7 +205,7 @@ class ActiveProcInfoHandler:
         self._proc_info_handler = ProcInfoHandler()
 
     def append(self, process_info: events.RunningProcessEvent) -> None:
-        """Record an event of a process."""
+        """Record the start or the exit of a process."""
         with self.proc_event:
             self._proc_info_handler.append(process_info)
             self.proc_event.notify_all()
@@ -224,7 +227,8 @@ class ActiveProcInfoHandler:
     def __getitem__(self, key: str | ExecuteLocal) -> Any:
         """Return the last event of a process, given a part of its name or its action.
 
-        An unknown process raises KeyError.
+        Raises:
+            KeyError: the process is unknown.
         """
         with self.proc_event:
             return self._proc_info_handler[key]

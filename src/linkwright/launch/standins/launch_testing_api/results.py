@@ -1,6 +1,6 @@
-"""Test results, and the XML that CI servers read.
+"""The results of tests, and their XML form for CI servers.
 
-They are ``launch_testing.test_result`` and ``junitxml``.
+This module replaces ``launch_testing.test_result`` and ``launch_testing.junitxml``.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ class _Run(Protocol):
 
 
 class TestResult(unittest.TextTestResult):
-    """The results of tests that ran, with the tests themselves and their durations."""
+    """The results of tests that ran, with the tests and their durations."""
 
     __test__ = False  # keeps pytest from collecting the class as a test
 
@@ -73,7 +73,7 @@ class _NotRun(unittest.TestResult):
 
 
 class FailResult(_NotRun):
-    """The results of tests whose launch ended before they finished: all of them failed.
+    """The results of tests whose launch ended before the tests finished: all of them failed.
 
     Args:
         test_run: the test run.
@@ -111,7 +111,7 @@ def unittestResultsToXml(
 
     Args:
         name: the name of the document.
-        test_results: launch, or its name -> results of its tests.
+        test_results: launch (or its name) -> results of its tests.
     """
     results = test_results or {}
     seconds = sum(sum(result.testTimes.values()) for result in results.values())

@@ -27,16 +27,18 @@ _STOP_SECONDS = 5.0
 
 
 class LaunchTestRunner(_LaunchTestRunner):
-    """Runs launches, each with its tests."""
+    """Runs launches and the tests of each launch."""
 
 
 class WaitForTopics:
-    """Waits for a message on each of several topics; can be used as a context manager.
+    """Waits for a message on each of several topics.
+
+    An instance can be used as a context manager.
 
     Args:
         topic_tuples: names and types of the topics.
         timeout: the timeout in seconds.
-        messages_received_buffer_length: the number of messages to keep for each topic.
+        messages_received_buffer_length: the number of messages to store for each topic.
         trigger: a function that is called after the subscriptions are created.
         node_namespace: the namespace of the subscribing node.
     """
@@ -65,7 +67,7 @@ class WaitForTopics:
         self._thread.start()
 
     def wait(self, *args: Any, **kwargs: Any) -> bool:
-        """Wait, and return whether a message arrived on each topic in time.
+        """Wait for the messages, and return whether a message arrived on each topic in time.
 
         The arguments are passed to the trigger.
         """
@@ -96,10 +98,10 @@ class WaitForTopics:
         return {name for name, _ in self.topic_tuples} - self.topics_received()
 
     def received_messages(self, topic_name: str) -> list[Any]:
-        """Return the messages of a topic, oldest first.
+        """Return the stored messages of a topic, oldest first.
 
         Raises:
-            KeyError: it is not one of the topics.
+            KeyError: the name is not one of the topics.
         """
         if topic_name not in self._received:
             raise KeyError("No messages received for topic: " + topic_name)
@@ -152,7 +154,7 @@ class MessagePump:
         """Stop the thread.
 
         Raises:
-            Exception: a callback does not return.
+            Exception: a callback does not return in time.
         """
         self._stopping.set()
         self._thread.join(timeout=_STOP_SECONDS)
@@ -167,14 +169,14 @@ class MessagePump:
 
 
 class DataRepublisher:
-    """Transforms the messages of a topic, and publishes them on another topic.
+    """Transforms the messages of a topic, and publishes the results on another topic.
 
     Args:
         node: the node that subscribes and publishes.
         listen_topic: the input topic.
         publish_topic: the output topic.
         msg_type: the message type of both topics.
-        transform_fn: returns the output for a message, or None to publish nothing.
+        transform_fn: returns the output message for an input message, or None to publish nothing.
     """
 
     def __init__(
@@ -213,9 +215,7 @@ class DataRepublisher:
 
 
 def get_rmw_output_filter(rmw_implementation: str, filter_type: str) -> list[str]:
-    """Return prefixes or patterns of output lines that are noise.
-
-    An rmw implementation declares them.
+    """Return the prefixes or patterns of output lines that an rmw implementation declares as irrelevant.
 
     Args:
         rmw_implementation: the package of the rmw implementation.
@@ -239,12 +239,13 @@ def basic_output_filter(
     filtered_patterns: Sequence[str] | None = None,
     filtered_rmw_implementation: str | None = None,
 ) -> Callable[[str], str]:
-    """Return a function that removes lines from an output.
+    """Return a function that removes irrelevant lines from an output.
 
     Args:
         filtered_prefixes: the prefixes of lines to remove.
         filtered_patterns: regular expressions for the beginnings of lines to remove.
-        filtered_rmw_implementation: an rmw implementation whose noise is removed, too, see `get_rmw_output_filter`.
+        filtered_rmw_implementation: an rmw implementation whose irrelevant lines are also removed, see
+            `get_rmw_output_filter`.
     """
     prefixes = list(text.get_default_filtered_prefixes() if filtered_prefixes is None else filtered_prefixes)
     patterns = list(filtered_patterns or ())

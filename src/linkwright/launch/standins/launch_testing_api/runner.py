@@ -1,7 +1,7 @@
-"""Runs the tests of a file with their launches (``launch_testing.test_runner``).
+"""Runs the tests of a file and their launches (``launch_testing.test_runner``).
 
-A launch runs in the main thread, because only the main thread receives signals, and its tests run in another thread.
-The post-shutdown tests run in the main thread after the launch.
+A launch runs in the main thread, because only the main thread receives signals. The tests during the launch run in
+another thread. The post-shutdown tests run in the main thread after the launch.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from linkwright.launch.standins.launch_testing_api.test_runs import TestRun
 
 
 class _LaunchDiedError(Exception):
-    """Raised when the launch ended before its tests."""
+    """Raised when the launch ended before its tests had finished."""
 
 
 class _RunnerWorker:
@@ -35,8 +35,8 @@ class _RunnerWorker:
 
     Args:
         test_run: the tests to run.
-        test_run_preamble: entities to launch first.
-        launch_file_arguments: arguments of the launch, ``name:=value``.
+        test_run_preamble: the entities to launch before the description of the tests.
+        launch_file_arguments: the arguments of the launch in the form ``name:=value``.
         debug: whether the launch logs details.
     """
 
@@ -58,10 +58,10 @@ class _RunnerWorker:
         self._proc_output = ActiveIoHandler()
 
     def run(self) -> TestResult:
-        """Launch the description, run the tests, and return their results.
+        """Launch the description, run the tests, and return the results of the tests.
 
         Raises:
-            _LaunchDiedError: the launch ended before its tests.
+            _LaunchDiedError: the launch ended before its tests had finished.
             unittest.SkipTest: the launch is skipped.
         """
         run = self._test_run
@@ -79,7 +79,7 @@ class _RunnerWorker:
         return results
 
     def _bind(self, context: Mapping[str, Any]) -> None:
-        """Pass arguments and attributes to the tests."""
+        """Pass the context of the description and the records of processes to the tests."""
         beside: dict[str, Any] = {
             "launch_service": self._launch_service,
             "proc_info": self._proc_info,
@@ -95,9 +95,9 @@ class _RunnerWorker:
         self._test_run.bind(self._test_run.post_shutdown_tests, after, {**context, **after})
 
     def _with_recorders(self, description: LaunchDescription) -> LaunchDescription:
-        """Return a description that includes the given one, and records its processes.
+        """Return a launch description that includes another one and records its processes.
 
-        The arguments of the launch are passed to it.
+        The arguments of the launch are passed to the included description.
         """
         info, output = self._proc_info, self._proc_output
 
@@ -141,11 +141,11 @@ class _RunnerWorker:
 
 
 class LaunchTestRunner:
-    """Runs several launches, each with its tests.
+    """Runs several launches and the tests of each launch.
 
     Args:
         test_runs: the tests of each launch.
-        launch_file_arguments: arguments of the launches, ``name:=value``.
+        launch_file_arguments: the arguments of the launches in the form ``name:=value``.
         debug: whether the launches log details.
     """
 
@@ -157,11 +157,17 @@ class LaunchTestRunner:
         self._debug = debug
 
     def generate_preamble(self) -> list[Any]:
-        """Return entities to launch first; empty unless a subclass overrides this method."""
+        """Return the entities to launch before the description of each test run.
+
+        The list is empty unless a subclass overrides this method.
+        """
         return []
 
     def run(self) -> dict[TestRun, unittest.TestResult]:
-        """Run all launches, and return the results of each; stop if one ends before its tests."""
+        """Run the launches in order, and return the test results of each.
+
+        The first launch that ends before its tests have finished stops the run.
+        """
         results: dict[TestRun, unittest.TestResult] = {}
         for run in self._test_runs:
             if len(self._test_runs) > 1:
@@ -178,9 +184,10 @@ class LaunchTestRunner:
         return results
 
     def validate(self) -> None:
-        """Check that ``generate_test_description`` accepts its arguments.
+        """Check that the parameters of ``generate_test_description`` are those of its parametrization.
 
-        Raise Exception otherwise.
+        Raises:
+            Exception: a parameter is missing or unexpected.
         """
         for run in self._test_runs:
             asked = inspect.getfullargspec(inspect.unwrap(run._test_description_function))

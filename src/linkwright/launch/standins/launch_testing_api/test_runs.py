@@ -45,7 +45,7 @@ class TestRun:
         self.post_shutdown_tests = post_shutdown_tests
         self.timeout: float = getattr(test_description_function, TIMEOUT, _READY_SECONDS)
         self._test_description_function = test_description_function
-        self._cases = [*_cases(pre_shutdown_tests), *_cases(post_shutdown_tests)]  # suites drop tests that have run
+        self._cases = [*_cases(pre_shutdown_tests), *_cases(post_shutdown_tests)]  # suites drop finished tests
         if self.param_args:
             for case in self._cases:
                 _rename(case, case._testMethodName + self._shown_arguments())
@@ -57,7 +57,7 @@ class TestRun:
         return found
 
     def normalized_test_description(self, *, ready_fn: Callable[[], object]) -> Described:
-        """Return the launch description, and the context that its function returns for the tests.
+        """Return the launch description, and the context of the tests.
 
         Args:
             ready_fn: called when the tests may start.
@@ -90,8 +90,9 @@ class TestRun:
 
         Args:
             tests: the suite of tests.
-            injected_attributes: name -> value of attributes to set on each test.
-            injected_args: name -> value of arguments, for tests and their fixtures that have such an argument.
+            injected_attributes: name -> value of attributes to set on the class of each test.
+            injected_args: name -> value of arguments, for tests and their fixtures that have a parameter with this
+                name.
         """
         cases = list(_cases(tests))
         for kind in {type(case) for case in cases}:
@@ -117,10 +118,8 @@ class TestRun:
 def LoadTestsFromPythonModule(module: Any, *, name: str = "launch_tests") -> list[TestRun]:
     """Return the tests of a module, one `TestRun` for each launch.
 
-    The module has a function ``generate_test_description``.
-
     Args:
-        module: the module.
+        module: the module, which must have a function ``generate_test_description``.
         name: the name of the tests.
     """
     made = module.generate_test_description
@@ -138,14 +137,14 @@ def LoadTestsFromPythonModule(module: Any, *, name: str = "launch_tests") -> lis
 
 
 class _Loader(unittest.TestLoader):
-    """Loads either the tests that run during a launch, or those that run after it."""
+    """The base class of loaders for the tests during a launch or after it."""
 
     is_after = False
 
     def loadTestsFromTestCase(self, testCaseClass: type[unittest.TestCase]) -> unittest.TestSuite:
-        """Load the tests of a class as a subclass of it.
+        """Load the tests of a class through a new subclass.
 
-        Each launch has a separate subclass, because attributes are injected.
+        Each launch has its own subclass, because the attributes of the launch are set on the class.
         """
         if getattr(testCaseClass, AFTER_SHUTDOWN, False) != self.is_after:
             return unittest.TestSuite()
@@ -164,7 +163,7 @@ class PostShutdownTestLoader(_Loader):
 
 
 def _cases(tests: Iterable[Any]) -> Iterator[Any]:
-    """Yield the tests in nested suites."""
+    """Yield the tests in suites, which may be nested."""
     for test in tests:
         if isinstance(test, Iterable):
             yield from _cases(test)
@@ -178,6 +177,6 @@ def _rename(case: Any, name: str) -> None:
 
 
 def _bound(function: Callable[..., Any], given: Mapping[str, Any]) -> Callable[..., Any]:
-    """Return a function with those of the given arguments bound that it accepts."""
+    """Bind the given arguments for which a function has a parameter."""
     asked = inspect.signature(function).parameters
     return functools.partial(function, **{name: value for name, value in given.items() if name in asked})

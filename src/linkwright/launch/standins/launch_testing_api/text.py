@@ -1,4 +1,4 @@
-"""Comparison of output with expectations (``launch_testing.tools.text`` and ``output``)."""
+"""Comparison of output with expected text (``launch_testing.tools.text`` and ``output``)."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Match = Callable[..., "Range | None"]
 
 
 def normalize_lineseps(lines: str) -> str:
-    r"""Return a text with ``\n`` line ends, even if it was written to a terminal."""
+    r"""Return a text with ``\n`` line ends instead of those of a terminal."""
     return lines.replace(os.linesep, "\n").replace("\r\n", "\n")
 
 
@@ -81,9 +81,9 @@ def build_line_match(expected_lines: Any, *, strict: bool = False) -> Match:
 
 
 def _in_order(matches: Sequence[Match], *, strict: bool) -> Match:
-    """Return a function that finds expectations in order.
+    """Return a function that finds several expectations in order.
 
-    They are adjacent if `strict` is set; otherwise, other text may be between them.
+    If `strict` is set, the matches must be adjacent; otherwise, other text may be between them.
     """
 
     def find(written: Any, start: int = 0) -> Range | None:
@@ -107,14 +107,14 @@ def expect_output(
     strip_ansi_escape_sequences: bool = True,
     strict: bool = False,
 ) -> bool:
-    """Return whether a text, or lines, contain an expectation.
+    """Return whether an output contains an expectation.
 
     Args:
         text: the output as text; alternatively, `lines`.
         lines: the output as lines.
         expected_text: see `build_text_match`; alternatively, `expected_lines`.
         expected_lines: see `build_line_match`.
-        strip_ansi_escape_sequences: whether to remove colours before the comparison.
+        strip_ansi_escape_sequences: whether to remove ANSI escape sequences before the comparison.
         strict: see `build_text_match`.
 
     Raises:
@@ -151,7 +151,7 @@ def get_default_filtered_prefixes() -> list[str]:
 
 
 def get_default_filtered_patterns() -> list[str]:
-    """Return the regular expressions of lines that a filter removes by default: none."""
+    """Return an empty list, because a filter removes no patterns of lines by default."""
     return []
 
 

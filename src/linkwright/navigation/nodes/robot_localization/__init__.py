@@ -1,1 +1,1 @@
-"""The nodes of robot_localization: pose estimation from several sensors."""
+"""The nodes of robot_localization, which estimate poses from several sensors."""

@@ -49,10 +49,10 @@ class SensorSettings:
     Attributes:
         name: the name, such as ``odom0``.
         kind: one of `KINDS`.
-        topic: the topic of its messages.
+        topic: the topic of the sensor's messages.
         used: which of the 15 values of the state the sensor provides.
-        differential: whether its poses are used as velocities.
-        relative: whether its poses are relative to the first one.
+        differential: whether the sensor's poses are used as velocities.
+        relative: whether the sensor's poses are relative to the first one.
         queue_size: the depth of the subscription.
         pose_threshold: the deviation in standard deviations above which a pose is rejected.
         twist_threshold: the same for twists.
@@ -75,7 +75,7 @@ class SensorSettings:
 
 @dataclass(frozen=True, slots=True)
 class Configuration:
-    """The parameters as one object.
+    """The parameters of a node.
 
     Times are in nanoseconds if the name ends in ``_ns``, else in seconds.
     """
@@ -97,7 +97,7 @@ class Configuration:
 
 
 def configuration_of(node: Node) -> Configuration:
-    """Declare the parameters of a node and read them.
+    """Declare and read the parameters of a node.
 
     Raises:
         LinkwrightError: NODE433, a value is invalid; NODE441, a list has the wrong length; NODE442, the frames are not
@@ -211,7 +211,7 @@ def _sensor(node: Node, kind: str, name: str, topic: str) -> SensorSettings:
         acceleration_threshold=declare("linear_acceleration_rejection_threshold", inf) if acceleration else inf,
         remove_gravity=bool(declare("remove_gravitational_acceleration", False)) if acceleration else False,
     )
-    declare("nodelay", False)  # A parameter of ROS 1 that parameter files still contain
+    declare("nodelay", False)  # A parameter of ROS 1 that parameter files still contain.
     if not any(sensor.used):
         node.get_logger().warning(
             f"{topic} is listed as an input topic ({name}), but nothing that it gives is true in {name}_config"
@@ -225,9 +225,9 @@ _THRESHOLDS = ("pose_rejection_threshold", "twist_rejection_threshold")
 
 
 def _control(node: Node, sensors: Sequence[SensorSettings]) -> Control | None:
-    """Return the settings for commanded velocities.
+    """Return the response to commanded velocities, or None if they are not used.
 
-    All are declared, so that unused ones are recognized.
+    All parameters are declared even if unused, so that they are not reported as unknown.
     """
     use: bool = node.declare_parameter("use_control", False).value
     timeout: float = node.declare_parameter("control_timeout", _CONTROL_TIMEOUT).value
@@ -254,7 +254,7 @@ def _control(node: Node, sensors: Sequence[SensorSettings]) -> Control | None:
 
 
 def _covariance(node: Node, name: str, default: Matrix) -> Matrix:
-    """Return a covariance of the state from 225 numbers or the 15 numbers of the diagonal."""
+    """Return a covariance from a parameter with all 225 or the 15 diagonal numbers."""
     numbers = _numbers(node, name, (SIZE * SIZE, SIZE))
     if numbers is None:
         return default
@@ -280,10 +280,10 @@ def _flags(node: Node, name: str, length: int) -> Used | None:
 
 
 def check_length(name: str, length: int, lengths: tuple[int, ...]) -> None:
-    """Check the number of a parameter's values.
+    """Check that a parameter's list has one of the permitted lengths.
 
     Raises:
-        LinkwrightError: NODE441, the number is wrong.
+        LinkwrightError: NODE441, the length is wrong.
     """
     if length not in lengths:
         known = " / ".join(str(length) for length in lengths)

@@ -1,11 +1,11 @@
-"""ekf_node and ukf_node of robot_localization: estimation of pose and motion from several sensors.
+"""ekf_node and ukf_node of robot_localization, which estimate pose and motion from several sensors.
 
-They follow robot_localization 3.5 (ROS 2 Humble) and later, with these deliberate differences:
+The nodes follow robot_localization 3.5 (ROS 2 Humble) and later, with these deliberate differences:
 
 - When simulated time jumps back, such as on the reset of a world, the filter restarts whatever ``reset_on_time_jump``
   is set to; the original would wait until time has caught up.
 - A sensor that provides no acceleration (or no position) does not measure it as 0 where its ``_config`` is true.
-- Lookups of transforms never wait, so ``transform_timeout`` has no effect; nor has ``debug``.
+- Lookups of transforms never wait, so ``transform_timeout`` has no effect. Neither has ``debug``.
 - ``process_noise_covariance`` and ``initial_estimate_covariance`` may be the 15 numbers of the diagonal.
 - Sensors and their rules: see `linkwright.navigation.estimation.readings`.
 """
@@ -80,13 +80,13 @@ class EkfNode(SingleNode):
         node.create_service(get_service("robot_localization/srv/ToggleFilterProcessing"), "toggle", self._on_toggle)
         node.create_service(get_service("std_srvs/srv/Empty"), "enable", self._on_enable)
         backwards = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=True)
-        # Clocks are set in the thread that receives /clock; the filter runs in the node's thread.
+        # Clocks are set in the thread that receives /clock, but the filter may only be reset in the node's thread.
         jumped = node.create_guard_condition(self._time_jumped)
         self._jumps = self._clock.create_jump_callback(backwards, post_callback=lambda _: jumped.trigger())
         node.create_timer(1.0 / self._configuration.frequency, self._update)
 
     def close(self) -> None:
-        """Close the node."""
+        """Unregister the jump callback, and close the node."""
         self._jumps.unregister()
         super().close()
 
@@ -268,7 +268,7 @@ class EkfNode(SingleNode):
 
 
 class UkfNode(EkfNode):
-    """The running ukf_node; it raises the same errors as `EkfNode`."""
+    """The running ukf_node, which raises the same errors as `EkfNode`."""
 
     DEFAULT_NAME: ClassVar[str] = "ukf_filter_node"
 

@@ -1,9 +1,9 @@
-"""navsat_transform_node of robot_localization: converts satellite fixes to odometry, and odometry to fixes.
+"""navsat_transform_node of robot_localization, which converts satellite fixes to odometry and back.
 
-It follows robot_localization 3.5 (ROS 2 Humble). The map's origin and rotation on the earth are taken from the first
-fix, with the first odometry and the heading of an IMU (0 in the east), or from a datum. Deliberate differences: the
-offset of the receiver on the robot is removed with the orientation of the odometry instead of a lookup; ``delay`` does
-not block.
+The node follows robot_localization 3.5 (ROS 2 Humble). The map's origin and rotation on the earth are taken from the
+first fix, with the first odometry and the heading of an IMU (0 in the east), or from a datum. Deliberate differences:
+the offset of the receiver on the robot is removed with the orientation of the odometry instead of a lookup; ``delay``
+does not block.
 """
 
 from __future__ import annotations
@@ -146,7 +146,7 @@ class NavsatTransformNode(SingleNode):
             self._first_fix = place
 
     def _receive_imu(self, message: Any) -> None:
-        if self._map is not None or self._odometry is None:  # Wait for the odometry, which contains the body frame.
+        if self._map is not None or self._odometry is None:  # Odometry provides the body frame.
             return
         mounting = self._poses.pose(
             self._base_frame, message.header.frame_id or self._base_frame, message.header.stamp.nanoseconds
@@ -154,7 +154,7 @@ class NavsatTransformNode(SingleNode):
         if mounting is not None:
             self._heading = quaternion_multiply(_orientation(message.orientation), quaternion_inverse(mounting[3:]))
 
-    # --- the map on the earth ----------------------------------------------------------------------------------------
+    # --- georeferencing ----------------------------------------------------------------------------------------------
 
     def _set_datum(self, latitude: float, longitude: float, altitude: float, heading: Quaternion) -> None:
         self._manual = True
@@ -163,7 +163,10 @@ class NavsatTransformNode(SingleNode):
         self._place_map()
 
     def _place_map(self) -> None:
-        """Compute the transform of the map once all inputs have arrived."""
+        """Compute the pose of the earth's grid in the map if all inputs are known.
+
+        The inputs are the first fix, the first odometry and the heading.
+        """
         if self._first_fix is None or self._first_pose is None or self._heading is None:
             return
         latitude, longitude, altitude = self._first_fix
@@ -198,7 +201,7 @@ class NavsatTransformNode(SingleNode):
         self._tf_publisher.publish(TFMessage(batch=batch))
 
     def _receiver(self) -> Vector3:
-        """Return the position of the receiver on the robot."""
+        """Return the position of the receiver in the body frame, or the origin if it is unknown."""
         frame = self._fix.header.frame_id if self._fix is not None else ""
         if not frame:
             return 0.0, 0.0, 0.0
@@ -206,7 +209,7 @@ class NavsatTransformNode(SingleNode):
         return (0.0, 0.0, 0.0) if pose is None else pose[:3]
 
     def _grid(self, place: Vector3) -> Vector3:
-        """Convert a position on earth (degrees, degrees, metres) to a point of the grid, in metres."""
+        """Convert a geodetic position (degrees and metres) to a point of the grid, in metres."""
         if self._plane is not None:
             return self._plane.point_of(*place)
         assert self._zone is not None, "it comes with the first place"
@@ -214,7 +217,7 @@ class NavsatTransformNode(SingleNode):
         return easting, northing, place[2]
 
     def _place(self, point: Vector3) -> Vector3:
-        """Convert a point of the grid to a position on earth."""
+        """Convert a point of the grid, in metres, to a geodetic position (degrees and metres)."""
         if self._plane is not None:
             return self._plane.place_of(point)
         assert self._zone is not None, "it comes with the first place"

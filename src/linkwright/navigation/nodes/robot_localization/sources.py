@@ -1,4 +1,4 @@
-"""Sensors of ekf_node: conversion of their messages to measurements in the filter's frames."""
+"""Sensors of ekf_node, whose messages are converted to measurements in the filter's frames."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ _NOT_MEASURED = -1.0
 
 
 class Surroundings:
-    """The data that sensors share.
+    """The node, configuration and estimator that sensors share.
 
     Args:
         node: the node of the filter.
@@ -67,7 +67,7 @@ class Surroundings:
 
     @property
     def filter(self) -> KalmanFilter:
-        """The filter, whose estimate some measurements need."""
+        """The filter, whose estimate is needed to convert some measurements."""
         return self.estimator.filter
 
 
@@ -76,7 +76,7 @@ class Source:
 
     Args:
         settings: the settings of the sensor.
-        surroundings: the data shared with other sensors.
+        surroundings: the objects shared with other sensors.
     """
 
     def __init__(self, settings: SensorSettings, surroundings: Surroundings) -> None:
@@ -97,7 +97,7 @@ class Source:
             )
 
     def forget(self, *, time: bool) -> None:
-        """Treat the next pose as the first one; with `time`, also accept messages of any stamp."""
+        """Treat the next pose as the first one; if `time` is set, also accept older stamps."""
         self._pose.forget()
         if time:
             self._last_ns = -1

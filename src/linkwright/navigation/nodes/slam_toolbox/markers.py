@@ -1,4 +1,4 @@
-"""Markers of a pose graph: a sphere for each scan, a line for each edge."""
+"""Markers that display a pose graph: a sphere for each scan and a line for each edge."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ _LINE = 0.02
 
 
 def graph_markers(graph: PoseGraph, frame: str, stamp: Any) -> Any:
-    """Return a graph as a visualization_msgs/MarkerArray.
+    """Convert a pose graph to a visualization_msgs/MarkerArray.
 
-    Edges of consecutive scans are blue, others green.
+    Edges between consecutive scans are blue, other edges are green.
     """
     array = get_message("visualization_msgs/msg/MarkerArray")()
     point = get_message("geometry_msgs/msg/Point")

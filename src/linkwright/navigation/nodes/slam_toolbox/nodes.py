@@ -1,11 +1,11 @@
 """The executables of slam_toolbox: async, sync, localization, and map_and_localization.
 
-They follow slam_toolbox 2.6 (Humble), whose nodes work as soon as they start, and 2.8 (Jazzy), whose nodes are managed;
-``ROS_DISTRO`` selects one. Jazzy's nodes activate themselves if ``autostart_node`` is true, as in our launch files. The
-mapper is Linkwright's own (`linkwright.navigation.slam`). Differences:
+The nodes follow slam_toolbox 2.6 (Humble), whose nodes work as soon as they start, and 2.8 (Jazzy), whose nodes are
+managed; ``ROS_DISTRO`` selects the version. Jazzy's nodes activate themselves if ``autostart_node`` is true, as in our
+launch files. The mapper is Linkwright's own (`linkwright.navigation.slam`). Differences:
 
-- One solver replaces all solver plugins: Gauss-Newton on sparse matrices. Least squares refine each match, so
-  ``fine_search_angle_offset`` has no effect; nor has ``use_scan_barycenter``.
+- One solver replaces all solver plugins: Gauss-Newton on sparse matrices. Each match is refined by least squares, so
+  ``fine_search_angle_offset`` has no effect. Neither has ``use_scan_barycenter``.
 - A rotation by ``minimum_travel_heading`` is enough to process a scan, as the parameter's name suggests.
 - Moving scans by hand (``enable_interactive_mode``), merging maps and lifelong mapping are not supported: there is no
   ``lifelong_slam_toolbox_node``. The motion of the robot during a scan is ignored.
@@ -28,7 +28,7 @@ from linkwright.nodes.settings import log_unknown
 
 
 class _Managed(ManagedNode):
-    """The managed node of Jazzy."""
+    """The node as a managed node, as in Jazzy."""
 
     kind: type[AsyncSlamToolbox]
 
@@ -38,7 +38,7 @@ class _Managed(ManagedNode):
             self._beats = 0.0
 
     def configure(self) -> None:
-        """Read the parameters and start the mapper.
+        """Read the parameters, and create the toolbox and its services.
 
         Raises:
             LinkwrightError: see `AsyncSlamToolbox`.
@@ -62,7 +62,7 @@ class _Managed(ManagedNode):
 
 
 class AsyncSlamToolbox(SingleNode):
-    """The running async node, which skips scans that it has no time for.
+    """The running async node, which drops scans that arrive while it is busy.
 
     Raises:
         LinkwrightError: a parameter has an invalid value (NODE433, GRAPH201), SciPy is not installed (NAV101), or the
@@ -84,7 +84,7 @@ class AsyncSlamToolbox(SingleNode):
             return
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         with starting(self._node):
-            for name in ("use_lifecycle_manager", "autostart_node"):  # Jazzy's parameters
+            for name in ("use_lifecycle_manager", "autostart_node"):  # Jazzy's parameters, which have no effect here.
                 self._node.declare_parameter(name, False)
             self._work = self.open(self._node)
             log_unknown(self._node)
@@ -106,7 +106,7 @@ class AsyncSlamToolbox(SingleNode):
 
 
 class SyncSlamToolbox(AsyncSlamToolbox):
-    """The running sync node, which processes all scans, however long that takes."""
+    """The running sync node, which queues scans and processes all of them."""
 
     KEEPS_ALL = True
 

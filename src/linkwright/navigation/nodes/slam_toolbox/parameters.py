@@ -1,4 +1,4 @@
-"""The parameters of slam_toolbox's nodes, with its names, types and defaults (2.6 for Humble, 2.8 for Jazzy)."""
+"""The parameters of slam_toolbox's nodes, with their names, types and defaults in 2.6 (Humble) and 2.8 (Jazzy)."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _WITHOUT_EFFECT: dict[str, bool | int | float | str] = {
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """The parameters as one object, in metres, radians, and nanoseconds where the name ends in ``_ns``.
+    """The parameters of a node, in metres, radians, and nanoseconds if the name ends in ``_ns``.
 
     Attributes:
         odom_frame: the frame of odometry.
@@ -57,7 +57,7 @@ class Settings:
         yaw_covariance_scale: the factor applied to the variance of the published yaw.
         min_pass_through: see `OccupancyMap`.
         occupancy_threshold: see `OccupancyMap`.
-        map_file_name: the pose graph to continue; "" for none.
+        map_file_name: the saved pose graph to continue; "" for none.
         start: the robot's initial pose in that graph, shape (3,); None for the pose of the graph's first scan.
         mapper: the settings of the mapper.
     """
@@ -84,7 +84,7 @@ class Settings:
 
 
 class _Declared:
-    """Declares parameters of a node unless they are declared, and reads them."""
+    """The parameters of a node, each of which is declared when it is first read."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
@@ -116,10 +116,10 @@ class _Declared:
 
 
 def settings_of(node: Node) -> Settings:
-    """Declare the parameters of a node unless they are declared, and read them.
+    """Read the parameters of a node, declaring those that are not declared yet.
 
     Raises:
-        LinkwrightError: NODE433, a value is invalid; GRAPH201, a value has another type.
+        LinkwrightError: NODE433, a value is invalid; GRAPH201, a value has the wrong type.
     """
     declared = _Declared(node)
     declared.without_effect()
@@ -169,7 +169,10 @@ def _log_replaced(node: Node) -> None:
 
 
 def _start(node: Node) -> Floats | None:
-    """Return the initial pose in a saved map; unusual values are logged, as in slam_toolbox."""
+    """Return the initial pose in a saved map, or None for the pose of its first scan.
+
+    Unusual values are logged, as in slam_toolbox.
+    """
     for name, kind in (("map_start_pose", ParameterType.DOUBLE_ARRAY), ("map_start_at_dock", ParameterType.BOOL)):
         if not node.has_parameter(name):
             node.declare_parameter(name, kind)

@@ -1,9 +1,8 @@
-"""The work of slam_toolbox's nodes.
+"""The mapping and localization behind slam_toolbox's nodes.
 
-It processes scans, and publishes the map, the pose and the transform of odometry.
-
-Long computations run in steps of some milliseconds, between which other callbacks run. A scan that arrives meanwhile is
-dropped, unless the node is the synchronous one.
+A `Toolbox` processes scans, and publishes the map, the pose and the transform of odometry. Long computations run in
+steps of some milliseconds, between which other callbacks run. A scan that arrives meanwhile is dropped, unless the node
+is the synchronous one.
 """
 
 from __future__ import annotations
@@ -46,20 +45,20 @@ _COMPLAINTS = 5.0
 
 
 class Toolbox:
-    """The work of a node while it is configured.
+    """The mapping or localization of a node while it is configured.
 
     Args:
         node: the node.
         settings: the parameters.
-        keeps_all: whether scans are queued instead of dropped.
+        keeps_all: whether scans that arrive during a computation are queued instead of dropped.
         localizes: whether the robot is only localized, without changing the map.
 
     Attributes:
         node: the node.
         settings: the parameters.
         mapper: the map and the robot's pose in it.
-        localizes: see above.
-        queue: the queued scans, with the poses of odometry.
+        localizes: whether the robot is only localized.
+        queue: the queued scans, with the odometry poses at the scans.
 
     Raises:
         LinkwrightError: NAV101, SciPy is not installed; NAV501, the initial map cannot be read.
@@ -67,7 +66,7 @@ class Toolbox:
 
     def __init__(self, node: Node, settings: Settings, *, keeps_all: bool, localizes: bool) -> None:
         for part in ("ndimage", "sparse", "sparse.linalg", "spatial"):
-            load_scipy(part)  # Fail now if SciPy is missing, not at the first scan.
+            load_scipy(part)  # Raise NAV101 now if SciPy is missing, not at the first scan.
         self.node, self.settings, self.localizes = node, settings, localizes
         self.mapper = self._new_mapper()
         self.queue: deque[tuple[PlanarScan, Floats]] = deque()
@@ -106,7 +105,7 @@ class Toolbox:
             node.create_timer(settings.map_update_interval, self.publish_map),
         ]
         backwards = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=True)
-        # Clocks are set in the thread that receives /clock.
+        # Clocks are set in the thread that receives /clock, but the map may only be reset in the node's thread.
         self._jumps = node.get_clock().create_jump_callback(backwards, post_callback=lambda _: self._jumped.trigger())
         if self.mapper.scans and self._work is None:
             self._begin(self._drawn())
@@ -138,7 +137,7 @@ class Toolbox:
     # --- requests of services and topics ------------------------------------------------------------------------------
 
     def reset(self) -> None:
-        """Start a new map; when localizing, restart in the same map."""
+        """Start a new map, or restart localization in the same map."""
         self._drop_work()
         self._pending = None
         self.queue.clear()
@@ -150,7 +149,11 @@ class Toolbox:
         self._published = False
 
     def load(self, name: str, start: Floats | None) -> None:
-        """Load a saved graph, and start at a pose of shape (3,), or at the pose of its first scan.
+        """Load a saved graph, and start at a pose in it.
+
+        Args:
+            name: the path of the graph.
+            start: the robot's pose, of shape (3,); None for the pose of the graph's first scan.
 
         Raises:
             LinkwrightError: NAV501, the graph cannot be read.
@@ -165,17 +168,17 @@ class Toolbox:
             self._begin(self._drawn())
 
     def place(self, pose: Floats) -> None:
-        """Search for the robot around a pose of the map, of shape (3,)."""
+        """Start a session at a pose in the map, of shape (3,); the next scan is matched around it."""
         self._drop_work()
         self.queue.clear()
         self.mapper.begin_session(pose)
 
     def grid(self) -> Grid | None:
-        """Return the current map; None if there is none."""
+        """Return the current map, or None if no cell is known."""
         return self.mapper.occupancy.grid()
 
     def map_message(self) -> Any | None:
-        """Return the map as a nav_msgs/OccupancyGrid; None if there is none."""
+        """Return the current map as a nav_msgs/OccupancyGrid, or None if no cell is known."""
         grid = self.grid()
         if grid is None:
             return None
@@ -196,7 +199,7 @@ class Toolbox:
             self._accept_scan()
 
     def _accept_scan(self) -> None:
-        """Accept the waiting scan once its transform is known."""
+        """Queue the pending scan if its transform is available, or drop the scan after the timeout."""
         if self._pending is None:
             return
         message, since_ns = self._pending
@@ -241,7 +244,7 @@ class Toolbox:
         stamp_ns = message.header.stamp.nanoseconds
         return planar_scan(ranges, angles, limits, self.settings.ranges, mounting, stamp_ns)
 
-    # --- work in steps -----------------------------------------------------------------------------------------------
+    # --- processing in steps -----------------------------------------------------------------------------------------
 
     def _begin_next(self) -> None:
         if not self.queue:
@@ -311,7 +314,7 @@ class Toolbox:
     # --- periodic publishing ------------------------------------------------------------------------------------------
 
     def publish_map(self) -> None:
-        """Publish the map, its metadata and the graph, if a map exists."""
+        """Publish the map and its metadata if a map exists, and the graph if it has subscribers."""
         message = self.map_message()
         if message is None:
             return
@@ -339,10 +342,10 @@ class Toolbox:
         self.reset()
 
     def pause(self, paused: bool) -> None:
-        """Pause or resume processing scans."""
+        """Pause or resume the processing of scans."""
         self.node.set_parameters([Parameter("paused_new_measurements", value=paused)])
 
 
 def _planar(pose: Transform) -> Floats:
-    """Convert a pose in space to a planar pose."""
+    """Convert a pose in space to x, y and yaw."""
     return np.array((pose[0], pose[1], rpy_from_quaternion(pose[3:])[2]))

@@ -1,1 +1,1 @@
-"""Calls of xacro in launch files, tests and build files, found without running them."""
+"""Readers for calls of xacro in launch files, tests and build files, which are not run."""

@@ -1,4 +1,4 @@
-"""Records of a file's xacro calls, included launch files, and the possible values of open places."""
+"""Records of the xacro calls and included launch files in a file, and the possible values of placeholders."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ class XacroCall:
 
     Attributes:
         path: the path of the description.
-        arguments: name -> value.
-        span: the place of the call.
-        is_command: whether the call is a command line, whose quotes are removed.
+        arguments: name -> value of the xacro arguments.
+        span: the location of the call.
+        is_command: whether the call is a command line, from whose arguments quotes are removed.
     """
 
     path: Text
@@ -31,11 +31,11 @@ class XacroCall:
 
 @dataclass(frozen=True, slots=True)
 class Inclusion:
-    """A launch file that another includes.
+    """The inclusion of a launch file by another one.
 
     Attributes:
-        path: the file.
-        arguments: name -> value of the launch arguments that are passed to it.
+        path: the path of the included file.
+        arguments: name -> value of the launch arguments that are passed to the included file.
     """
 
     path: Text
@@ -44,13 +44,13 @@ class Inclusion:
 
 @dataclass
 class CallingFile:
-    """The calls and inclusions of one file.
+    """The xacro calls and inclusions in one file.
 
     Attributes:
-        path: the file.
+        path: the path of the file.
         calls: the xacro calls in the file.
-        inclusions: the launch files that it includes.
-        choices: name -> the possible values of open places.
+        inclusions: the launch files that the file includes.
+        choices: name -> the possible values of placeholders.
     """
 
     path: str
@@ -60,7 +60,10 @@ class CallingFile:
 
     @cached_property
     def included(self) -> list[tuple[str | None, str, Inclusion]]:
-        """Each inclusion, preceded by the package that its path begins with, or None, and the file name."""
+        """Each inclusion, with the package and the file name of its path.
+
+        The package is None if the path does not begin with the share folder of a package.
+        """
         found: list[tuple[str | None, str, Inclusion]] = []
         for inclusion in self.inclusions:
             last = inclusion.path[-1] if inclusion.path and isinstance(inclusion.path[-1], str) else ""
@@ -77,15 +80,15 @@ class CallingFile:
 
 
 def launch_argument(name: str) -> Open:
-    """Return the open place of a launch argument."""
+    """Return the placeholder for the value of a launch argument."""
     return Open(_LAUNCH + name)
 
 
 def launch_choice(name: str) -> str:
-    """Return the name of the choice that represents a launch argument."""
+    """Return the name of the choice for a launch argument."""
     return _LAUNCH + name
 
 
 def launch_names(choices: Mapping[str, Choice]) -> dict[str, str]:
-    """Return the launch arguments among choices: name of the choice -> name of the argument."""
+    """Return the choices that are launch arguments: name of the choice -> name of the argument."""
     return {name: name.removeprefix(_LAUNCH) for name in choices if name.startswith(_LAUNCH)}

@@ -1,4 +1,4 @@
-"""Calls of xacro in ``CMakeLists.txt``: macros of the package xacro, and commands that run it."""
+"""Reader for calls of xacro in ``CMakeLists.txt``: macros of the package xacro, and commands that run it."""
 
 from __future__ import annotations
 
@@ -57,7 +57,10 @@ def _calls(command: Command, package: Path) -> Iterator[tuple[Text, dict[str, Te
 
 
 def _path(word: str, command: Command, package: Path) -> str:
-    """Return the path of a robot file in the package's folder that a word names; other words unchanged."""
+    """Return the path in the package's folder that an argument names, if it names a robot description.
+
+    Other arguments are returned unchanged.
+    """
     if not word.endswith((".xacro", ".urdf")):
         return word
     return str(package / within_package(word, command.folder))

@@ -1,4 +1,4 @@
-"""Command lines that call xacro."""
+"""Parser for command lines that call xacro."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ _WITH_VALUE = frozenset({"-o", "--output"})
 
 
 def xacro_command(line: Text) -> tuple[Text, dict[str, Text]] | None:
-    """Return the file and arguments of a command line that calls xacro; None for other command lines.
+    """Return the file and the arguments of a command line that calls xacro.
 
-    Unknown words become an argument without a name.
+    The result is None for other command lines. Unknown words become an argument without a name.
     """
     words = list(_words(line))
     start = next((at for at, word in enumerate(words) if _is_program(word)), None)
@@ -42,12 +42,15 @@ def xacro_command(line: Text) -> tuple[Text, dict[str, Text]] | None:
 
 
 def _is_program(word: Text) -> bool:
-    """Return whether a word is the program: ``xacro``, or a path to it."""
+    """Return whether a word is ``xacro`` or a path of this program."""
     return bool(word) and isinstance(word[-1], str) and _PROGRAM.search(word[-1]) is not None and len(word) <= 2
 
 
 def _words(line: Text) -> Iterator[Text]:
-    """Yield the words of a command line; quotes protect blanks and are kept."""
+    """Yield the words of a command line.
+
+    Quotes protect whitespace, and are preserved in the words.
+    """
     word: list[Text] = []
     quote = ""
     for piece in line:
@@ -72,7 +75,7 @@ def _words(line: Text) -> Iterator[Text]:
 
 
 def _joined(parts: Iterable[Text]) -> Text:
-    """Concatenate texts, merging adjacent strings."""
+    """Concatenate texts, and merge adjacent strings."""
     found: list[str | Share | Open] = []
     for piece in joined(parts):
         last = found[-1] if found else None
@@ -84,7 +87,7 @@ def _joined(parts: Iterable[Text]) -> Text:
 
 
 def _unquoted(word: Text) -> Text:
-    """Return a word without the quotes around it or around a whole part, which a shell removes."""
+    """Return a word without the quotes around it, which a shell would remove."""
     if not word:
         return word
     first, last = word[0], word[-1]

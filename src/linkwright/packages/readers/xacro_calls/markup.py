@@ -1,4 +1,4 @@
-"""Calls of xacro in XML launch files, of ROS 2 and ROS 1, and in YAML launch files."""
+"""Reader for calls of xacro in XML launch files (ROS 2 and ROS 1) and YAML launch files."""
 
 from __future__ import annotations
 
@@ -20,7 +20,10 @@ _SHARES = frozenset({"find-pkg-share", "find"})
 
 
 def read_xml(source: SourceText) -> CallingFile:
-    """Read the calls of xacro in an XML launch file; empty if it is not XML or not a launch file."""
+    """Read the calls of xacro in an XML launch file.
+
+    The result is empty if the file is not XML or not a launch file.
+    """
     file = CallingFile(source.name)
     try:
         root = parse(source.text, source.name).root
@@ -54,7 +57,10 @@ def _offered(element: Element) -> Iterator[Text]:
 
 
 def read_yaml(source: SourceText) -> CallingFile:
-    """Read the calls of xacro in a YAML launch file; empty if it is not YAML or not a launch file."""
+    """Read the calls of xacro in a YAML launch file.
+
+    The result is empty if the file is not YAML or not a launch file.
+    """
     import yaml
 
     file = CallingFile(source.name)
@@ -69,7 +75,10 @@ def read_yaml(source: SourceText) -> CallingFile:
 
 
 def _read_entity(entity: Any, source: SourceText, file: CallingFile) -> None:
-    """Read an action of a YAML launch file: a mapping from its tag to attributes or nested actions."""
+    """Read an action of a YAML launch file.
+
+    An action is a mapping from its tag to attributes or nested actions.
+    """
     for tag, value in entity.items() if isinstance(entity, dict) else ():
         attributes = value if isinstance(value, dict) else {}
         if tag in ("arg", "let") and "name" in attributes:
@@ -89,7 +98,7 @@ def _read_entity(entity: Any, source: SourceText, file: CallingFile) -> None:
 
 
 def _mappings(value: Any, key: str) -> list[dict[Any, Any]]:
-    """Return the mappings in a list that have a key."""
+    """Return the items of a list that are mappings and have a key."""
     return [item for item in value if isinstance(item, dict) and key in item] if isinstance(value, list) else []
 
 
@@ -108,11 +117,11 @@ def _note(file: CallingFile, lines: list[Text], span: Span | None) -> None:
 
 
 def markup_text(text: str, file: str) -> Text:
-    """Return a text of a launch file with each ``$(...)`` as an open place.
+    """Convert a text of a launch file, with a placeholder for each ``$(...)``.
 
     Args:
         text: the text.
-        file: the launch file, for ``$(dirname)``.
+        file: the path of the launch file, for ``$(dirname)``.
     """
     found: list[str | Share | Open] = []
     at = 0
@@ -124,7 +133,7 @@ def markup_text(text: str, file: str) -> Text:
 
 
 def _substitutions(text: str) -> Iterator[tuple[int, int]]:
-    """Yield the start and end of the outermost ``$(...)`` in a text."""
+    """Yield the start and end offsets of the outermost ``$(...)`` in a text."""
     at = text.find("$(")
     while at >= 0:
         depth, end = 1, at + 2
@@ -165,7 +174,7 @@ def _commands(text: str, file: str) -> Iterator[Text]:
 
 
 def _line(written: str, file: str) -> Text:
-    """Return the first argument of ``$(command ...)``, which is quoted unless it is one word."""
+    """Return the first argument of ``$(command ...)``, without the quotes around several words."""
     quote = written[:1]
     if quote in ("'", '"'):
         end = written.rfind(quote)

@@ -1,4 +1,4 @@
-"""Calls of xacro in Python: launch files, tests, and other programs."""
+"""Reader for calls of xacro in Python files: launch files, tests, and other programs."""
 
 from __future__ import annotations
 
@@ -19,7 +19,10 @@ _BUILDER = "MoveItConfigsBuilder"
 
 
 def read_python(source: SourceText) -> CallingFile:
-    """Read the calls of xacro in a Python file; empty if it is not valid Python."""
+    """Read the calls of xacro in a Python file.
+
+    The result is empty if the file is not valid Python.
+    """
     file = CallingFile(source.name)
     try:
         python = PythonFile(source)
@@ -48,12 +51,12 @@ class _Reader:
             if isinstance(node, ast.Call) and called_name(node).endswith("DeclareLaunchArgument"):
                 self._declaration(node, scope)
             elif isinstance(node, ast.Call) and called_name(node).endswith("Command") and node.args:
-                self._handled.update(_lists_of(node.args[0], scope))  # its items may be parts of words
+                self._handled.update(_lists_of(node.args[0], scope))  # its items may be parts of command-line arguments
         for node, scope in self._nodes:
             if node in self._handled:
                 self._handled.update(ast.iter_child_nodes(node))
             elif isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
-                self._handled.add(node.value)  # a docstring
+                self._handled.add(node.value)  # skip docstrings
             elif isinstance(node, ast.Call):
                 self._call(node, scope)
             elif isinstance(node, (ast.JoinedStr, ast.BinOp, ast.Constant, ast.List)):
@@ -83,7 +86,7 @@ class _Reader:
             self._expansion(node, name, scope)
 
     def _command(self, node: ast.JoinedStr | ast.BinOp | ast.Constant | ast.List, scope: Scope) -> None:
-        """Record a text, or the words of a list, that may be a command line."""
+        """Record the call in a text, or in a list of arguments, if it is a command line of xacro."""
         value = self._texts.value(node, scope)
         if isinstance(value, Items):
             words = [item for item in value.values if isinstance(item, tuple)]
@@ -96,7 +99,7 @@ class _Reader:
             self._handled.update(ast.iter_child_nodes(node))
 
     def _expansion(self, node: ast.Call, name: str, scope: Scope) -> None:
-        """Record an expansion by any function that receives a description and a mapping."""
+        """Record a call of any function that receives the path of a description and a mapping."""
         paths: list[Text] = []
         mapping: Mapping[str, Value] | None = None
         for written in (*node.args, *(keyword.value for keyword in node.keywords)):
@@ -113,7 +116,7 @@ class _Reader:
             self._note((paths[0], dict(_texts_of(mapping))), node, is_command=is_command)
 
     def _of_builder(self, node: ast.Call, scope: Scope) -> None:
-        """Record a call of ``MoveItConfigsBuilder(...).robot_description(...)``."""
+        """Record a call ``MoveItConfigsBuilder(...).robot_description(...)``."""
         builder = next((inner for inner in ast.walk(node.func) if _is_builder(inner)), None)
         if not isinstance(builder, ast.Call):
             return
@@ -128,7 +131,7 @@ class _Reader:
             argument_of(node, "mappings") or (node.args[1] if len(node.args) > 1 else None), scope
         )
         arguments = dict(_texts_of(mappings.values)) if isinstance(mappings, Entries) else {}
-        self._note((_below_share(folder, file), arguments), node, is_command=True)  # as from substitutions
+        self._note((_below_share(folder, file), arguments), node, is_command=True)  # arguments as from substitutions
 
     def _inclusion(self, node: ast.Call, scope: Scope) -> None:
         source = node.args[0] if node.args else argument_of(node, "launch_description_source")
@@ -159,7 +162,7 @@ class _Reader:
 
 
 def _lists_of(node: ast.expr, scope: Scope) -> Iterator[ast.AST]:
-    """Yield the list that is assigned to a name."""
+    """Yield the expressions that are assigned to a name."""
     found = scope.find(node.id) if isinstance(node, ast.Name) else None
     yield from (binding.value for binding in (found[1] if found else ()) if binding.value is not None)
 

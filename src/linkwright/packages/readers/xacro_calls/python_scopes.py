@@ -12,13 +12,13 @@ Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 @dataclass(frozen=True, slots=True)
 class Binding:
-    """One place that gives a name a value.
+    """A statement or expression that binds a name to a value.
 
     Attributes:
         value: the expression; None if there is none, or it cannot be read.
         path: the position of the name's item in the value, for ``a, (b, c) = value``.
         is_item: whether the name is bound to each item of the value in turn, as in a loop.
-        is_added: whether the value is added to the previous one, as by ``+=``, ``append``, ``extend`` and ``update``.
+        is_added: whether the value is added to the previous value, as by ``+=``, ``append``, ``extend`` and ``update``.
     """
 
     value: ast.expr | None
@@ -34,8 +34,8 @@ class Scope:
     Attributes:
         around: the enclosing scope; None for the module.
         function: the function; None for the module.
-        names: name -> the bindings that give it a value.
-        entries: name -> the keys and values of its ``name[key] = value``.
+        names: name -> the bindings of the name.
+        entries: name -> the keys and values in assignments ``name[key] = value``.
     """
 
     around: Scope | None = None
@@ -44,7 +44,7 @@ class Scope:
     entries: dict[str, list[tuple[ast.expr, ast.expr]]] = field(default_factory=dict)
 
     def find(self, name: str) -> tuple[Scope, list[Binding]] | None:
-        """Return the innermost scope that binds a name, with the bindings; None if no scope binds it."""
+        """Return the innermost scope that binds a name, with the bindings, or None if no scope binds the name."""
         scope: Scope | None = self
         while scope is not None:
             if name in scope.names:
@@ -54,7 +54,10 @@ class Scope:
 
 
 def walk(tree: ast.Module) -> list[tuple[ast.AST, Scope]]:
-    """Return the nodes of a file, outer ones first, each with its scope, and fill all scopes."""
+    """Return the nodes of a file, each with its scope, after reading the bindings of all scopes.
+
+    Outer nodes come first.
+    """
     found: list[tuple[ast.AST, Scope]] = []
     waiting: list[tuple[ast.AST, Scope]] = [(tree, Scope())]
     while waiting:
@@ -88,7 +91,7 @@ def _bind(node: ast.AST, scope: Scope) -> None:
 
 
 def _bind_added(method: ast.Attribute, args: list[ast.expr], scope: Scope) -> None:
-    """Record items added to a list or mapping of this scope by ``append``, ``extend`` or ``update``."""
+    """Record the items that ``append``, ``extend`` or ``update`` add to a list or mapping of a scope."""
     bindings = scope.names.get(method.value.id) if isinstance(method.value, ast.Name) else None
     if bindings and len(args) == 1 and method.attr in ("append", "extend", "update"):
         added = ast.copy_location(ast.List(args, ast.Load()), args[0]) if method.attr == "append" else args[0]
@@ -112,7 +115,7 @@ def parameters(function: Function) -> list[str]:
 
 
 def defaults(function: Function) -> Iterator[tuple[str, ast.expr]]:
-    """Yield the parameters of a function that have a default, with the default."""
+    """Yield each parameter of a function that has a default, and the default."""
     names = parameters(function)
     values = function.args.defaults
     yield from zip(names[len(names) - len(values) :], values, strict=True)

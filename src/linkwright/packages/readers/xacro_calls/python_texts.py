@@ -1,4 +1,4 @@
-"""Evaluation of Python expressions to texts, lists and mappings, with open places for choices."""
+"""Evaluation of Python expressions to texts, lists and mappings, with placeholders for unknown values."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ UNKNOWN_ENTRIES: Mapping[str, Value] = {"": _OPEN}
 
 @dataclass(eq=False)
 class PythonTexts:
-    """An evaluator of expressions.
+    """An evaluator of expressions in a Python file.
 
     Args:
         file: the record that receives the choices.
@@ -74,7 +74,7 @@ class PythonTexts:
     _names: dict[tuple[int, str], Value] = field(default_factory=dict)
 
     def value(self, node: ast.expr | None, scope: Scope) -> Value:
-        """Return the value of an expression; an open place if it is not known."""
+        """Return the value of an expression, or a placeholder if the value is not known."""
         if node is None or self._depth > _DEEPEST:
             return _OPEN
         self._depth += 1
@@ -84,7 +84,7 @@ class PythonTexts:
             self._depth -= 1
 
     def text(self, node: ast.expr | None, scope: Scope) -> Text:
-        """Return the text of an expression; texts of several items are joined."""
+        """Return the text of an expression; the texts of several items are concatenated."""
         return _as_text(self.value(node, scope))
 
     def _value(self, node: ast.expr, scope: Scope) -> Value:
@@ -160,7 +160,7 @@ class PythonTexts:
     def _got(self, owner: ast.expr, node: ast.Call, scope: Scope) -> Value:
         """Return the value of ``mapping.get(key, default)``.
 
-        It is the default only if the mapping is known not to have the key.
+        The default is returned only if the mapping is known and does not contain the key.
         """
         key, default = (*node.args, None)[:2] if node.args else (None, None)
         if isinstance(owner, ast.Attribute) and owner.attr == "launch_configurations":
@@ -245,7 +245,7 @@ class PythonTexts:
         home, bindings = found
         key = (id(home), name)
         if key not in self._names:
-            self._names[key] = _OPEN  # the value for a name that depends on itself
+            self._names[key] = _OPEN  # breaks the recursion for a name that depends on itself
             value = self._value_of_name(name, home, bindings)
             self._names[key] = _OPEN if isinstance(value, tuple) and len(value) > _MOST_PIECES else value
         return self._names[key]
@@ -270,21 +270,21 @@ class PythonTexts:
         return value
 
     def _any_of(self, node: ast.expr | None, scope: Scope) -> Value:
-        """Return a value that represents any item of an expression, as in a loop."""
+        """Return a value that represents any item of an iterable expression."""
         value = self.value(node, scope)
         if not isinstance(value, Items):
             return _OPEN
         return value.values[0] if len(value.values) == 1 else self._rows_of(node, value.values, is_certain=True)
 
     def _one_of(self, node: ast.expr | None, values: Sequence[Value]) -> Value:
-        """Return one of several values, where the condition of each is not known."""
+        """Return a value that represents one of several values under unknown conditions."""
         lasting = [value for value in values if value != _OPEN]
         if len(lasting) < 2 or not all(isinstance(item, tuple) for item in lasting):
             return lasting[0] if lasting else _OPEN
         return self._rows_of(node, lasting, is_certain=False)
 
     def _rows_of(self, node: ast.expr | None, values: Sequence[Value], *, is_certain: bool) -> Value:
-        """Return an open place for one of several values; for lists of equal length, a list of open places."""
+        """Return a placeholder for one of several values; for lists of equal length, a list of placeholders."""
         name = "unknown" if node is None else f"at:{node.lineno}:{node.col_offset}"
         width = {len(value.values) if isinstance(value, Items) else 0 for value in values}
         if len(width) != 1:
@@ -297,7 +297,7 @@ class PythonTexts:
         return Items(tuple((Open(name, column),) for column in range(columns))) if columns else (Open(name),)
 
     def _parameter(self, name: str, scope: Scope) -> Value:
-        """Return the value of a function's parameter, from pytest or from the calls in this file."""
+        """Return the value of a function's parameter, which pytest or calls in the same file determine."""
         function = scope.function
         assert function is not None
         outer = scope.around or scope
@@ -329,7 +329,7 @@ class PythonTexts:
 
 
 def _plain(text: Text) -> str | None:
-    """Return a text as a string; None if it has open places."""
+    """Return a text as a string, or None if the text has placeholders."""
     strings = [piece for piece in text if isinstance(piece, str)]
     return "".join(strings) if len(strings) == len(text) else None
 
@@ -355,7 +355,7 @@ def _sum(left: Value, right: Value) -> Value:
 
 
 def _filled(parts: Sequence[str], texts: Sequence[Text]) -> Text:
-    """Return the parts of a pattern with the given texts between them."""
+    """Return a text with the parts of a pattern and the given texts between them."""
     result = literal(parts[0])
     for text, part in zip(texts, parts[1:], strict=True):
         result = (*result, *text, *literal(part))

@@ -1,4 +1,4 @@
-"""Texts with open places, as in launch files, and the possible values of these places."""
+"""Texts with placeholders, as in launch files, and the possible values of the placeholders."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ MOST_SETS = 24
 
 @dataclass(frozen=True, slots=True)
 class Share:
-    """The share folder of a package.
+    """The share folder of a package, as a part of a text.
 
     Attributes:
-        package: the name of the package, which may itself contain open places.
+        package: the name of the package, which may itself contain placeholders.
     """
 
     package: Text
@@ -28,12 +28,13 @@ class Share:
 
 @dataclass(frozen=True, slots=True)
 class Open:
-    """A place of a text that is filled when the program runs.
+    """A placeholder in a text, whose value is determined when the program runs.
 
     Attributes:
-        choice: the name of the `Choice` that decides.
-        column: the index of the item in the chosen row.
-        is_part: whether it begins a component of a path, where an absolute path replaces everything before it.
+        choice: the name of the `Choice` that determines the value.
+        column: the index of the value in the selected row.
+        is_part: whether the placeholder begins a component of a path, where an absolute path replaces everything before
+            it.
     """
 
     choice: str
@@ -48,12 +49,12 @@ UNKNOWN = Open("")
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """The possible values of open places that are filled together.
+    """The possible values of placeholders that are filled together.
 
     Attributes:
         rows: the alternatives; the first is the default.
-        is_certain: whether each row can occur with any rows of other choices. The branches of an `if` may depend on
-            each other.
+        is_certain: whether each row can occur with any rows of other choices. Otherwise, the choices may depend on each
+            other, like the branches of an `if`.
     """
 
     rows: tuple[tuple[Text, ...], ...]
@@ -62,11 +63,11 @@ class Choice:
 
 @dataclass(slots=True)
 class Selection:
-    """The selected rows of choices.
+    """The selected row of each choice.
 
     Attributes:
-        rows: choice -> index of its row; the first row if it is missing.
-        given: choice -> the text for its first place, whatever its rows are.
+        rows: choice -> index of the selected row; the first row if the choice is missing.
+        given: choice -> the text for its placeholders, which takes precedence over its rows.
     """
 
     rows: Mapping[str, int] = field(default_factory=dict)
@@ -74,7 +75,7 @@ class Selection:
 
 
 def literal(text: str) -> Text:
-    """Return a text without open places."""
+    """Return a text without placeholders."""
     return (text,) if text else ()
 
 
@@ -84,7 +85,10 @@ def joined(parts: Iterable[Text]) -> Text:
 
 
 def joined_path(parts: Sequence[Text]) -> Text:
-    """Join texts as components of a path; an absolute one starts a new path, as in ``os.path.join``."""
+    """Join texts as components of a path.
+
+    As in ``os.path.join``, an absolute component starts a new path.
+    """
     path: Text = ()
     for part in parts:
         first = part[0] if part else ""
@@ -100,7 +104,7 @@ def joined_path(parts: Sequence[Text]) -> Text:
 
 
 def resolve(text: Text, choices: Mapping[str, Choice], selection: Selection, depth: int = 0) -> str | None:
-    """Return the text with its places filled, or None if one stays open.
+    """Fill the placeholders of a text, and return it as a string, or None if a placeholder has no value.
 
     A share folder is written as its `share_mark`.
     """
@@ -123,12 +127,15 @@ def resolve(text: Text, choices: Mapping[str, Choice], selection: Selection, dep
 
 
 def share_mark(package: str) -> str:
-    """Return the mark for a share folder in a text that `resolve` returns."""
+    """Return the text that represents a package's share folder in the result of `resolve`."""
     return f"{_MARK}{package}{_MARK}"
 
 
 def split_mark(path: str) -> tuple[str | None, str]:
-    """Return the package of the share folder that a resolved path begins with, or None, and the rest."""
+    """Return the package and the rest of a resolved path that begins with a share folder.
+
+    The package is None for any other path, which is returned unchanged.
+    """
     if not path.startswith(_MARK):
         return None, path
     package, _, rest = path[1:].partition(_MARK)
@@ -146,7 +153,7 @@ def _chosen(place: Open, choices: Mapping[str, Choice], selection: Selection) ->
 
 
 def choices_in(text: Text, choices: Mapping[str, Choice], given: Mapping[str, str]) -> list[str]:
-    """Return the names of the choices that a text depends on, without duplicates and those in `given`."""
+    """Return the names of the choices that a text depends on, without duplicates and names in `given`."""
     found: dict[str, None] = {}
     waiting: list[Text] = [text]
     while waiting:
@@ -162,7 +169,7 @@ def choices_in(text: Text, choices: Mapping[str, Choice], given: Mapping[str, st
 
 
 def selections(text: Text, choices: Mapping[str, Choice], given: Mapping[str, str]) -> Iterator[Selection]:
-    """Yield every way to fill the places of a text."""
+    """Yield the selections of rows for the placeholders of a text, up to a maximum number."""
     combined: list[dict[str, int]] = [{}]
     for name in choices_in(text, choices, given):
         rows = range(len(choices[name].rows) or 1)
@@ -173,10 +180,11 @@ def selections(text: Text, choices: Mapping[str, Choice], given: Mapping[str, st
 def variations(
     texts: Iterable[Text], choices: Mapping[str, Choice], start: Selection
 ) -> Iterator[tuple[Selection, bool]]:
-    """Yield ways to fill the places of several texts, each with whether it is known to occur.
+    """Yield selections of rows for the placeholders of several texts, each with whether it is known to occur.
 
-    First, every row of every choice occurs, one choice at a time. Then pairs of rows follow, which may not belong
-    together. There would be too many combinations otherwise.
+    First, every row of every choice occurs, one choice at a time. Then pairs of rows follow, which may not occur
+    together.
+    There would be too many combinations of all choices.
     """
     names = dict.fromkeys(name for text in texts for name in choices_in(text, choices, start.given))
     free = [name for name in names if name not in start.rows and len(choices[name].rows) > 1]

@@ -48,7 +48,7 @@ class DisplayHost(Protocol):
         """Handle a change of a display's robot; `gone` contains the frames that only the former robot had."""
 
     def fading_changed(self) -> None:
-        """Handle a change of a display's frame timeout or of its check box."""
+        """Handle a change of a TF display's frame timeout or check box."""
 
 
 Pose = NDArray[np.float64]
@@ -58,19 +58,19 @@ _RANK: dict[StatusLevel, int] = {"ok": 0, "warn": 1, "error": 2}
 
 
 def worst(rows: list[StatusRow]) -> StatusLevel:
-    """Return the most severe level of a display's status rows, which is the level of the display's own row."""
+    """Return the most severe level of status rows, which becomes the level of the display's own row."""
     return max((row.level for row in rows), key=_RANK.__getitem__, default="ok")
 
 
 class ViewerDisplay:
     """A display of the Displays panel.
 
-    A subclass sets its RViz class and its properties, and overrides the methods that handle events: start and stop,
-    new values, changed frames.
+    A subclass sets its RViz class and its properties, and overrides methods that handle events, such as starting and
+    stopping, new property values, and changed frames.
 
     Args:
         host: the visualization that contains the display.
-        identity: the display's ID in the page, which does not change during its lifetime.
+        identity: the display's ID in the page, which does not change during the display's lifetime.
         config: the display's entry in the .rviz file.
     """
 
@@ -100,7 +100,7 @@ class ViewerDisplay:
 
     @classmethod
     def messages_shown(cls) -> tuple[str, ...]:
-        """Return the types of topics for which the display can be added."""
+        """Return the message types of the topics that the display can show."""
         message: str = getattr(cls, "MESSAGE", "")
         return (message,) if message else ()
 
@@ -115,7 +115,7 @@ class ViewerDisplay:
         return self.config.enabled
 
     def schema(self) -> Schema:
-        """Return the current properties."""
+        """Return the declarations of the display's current properties."""
         return self.SCHEMA
 
     def row(self) -> Display:
@@ -134,7 +134,7 @@ class ViewerDisplay:
         )
 
     def set_property(self, path: Path, value: object) -> None:
-        """Set a property to a value received from a page, send it to all pages, and apply it.
+        """Set a property to a value received from a page, apply the value, and send it to all pages.
 
         Raises:
             ValueError: the property does not accept the value.
@@ -146,15 +146,15 @@ class ViewerDisplay:
         self.pages.publish(PropertyChanged(self.property_id(path), taken))
 
     def set_checked(self, value: bool) -> None:
-        """Set the check box, and send it to all pages; `enabled_changed` is called later."""
+        """Set the check box, and send its value to all pages; the caller then calls `enabled_changed`."""
         self.config.checked = value
         self.pages.publish(PropertyChanged(f"{self.id}/Enabled", value))
 
     def recall(self, memories: Sequence[Memory]) -> None:
-        """Restore some properties to the values of the file, send them to all pages, and apply them."""
+        """Restore properties to former entries of the file, apply the values, and send them to all pages."""
         for path in self.properties.recall(memories):
             self.changed(path)
-        self.properties.recall(memories)  # `changed` may have set further properties, so recall those too
+        self.properties.recall(memories)  # `changed` may have set further properties, so restore again
         self.recalled()
         self.publish_properties()
 
@@ -163,11 +163,11 @@ class ViewerDisplay:
         return self.properties.identity(path)
 
     def publish_properties(self) -> None:
-        """Send the property rows again."""
+        """Send all property rows of the display to the pages."""
         self.pages.publish(DisplayProperties(self.id, self.properties.rows()))
 
     def set_status(self, rows: list[StatusRow]) -> None:
-        """Show status rows; none while the display is off. Pages receive them only if they differ."""
+        """Show status rows, or none while the display is off; pages receive the rows only if they changed."""
         if not self.enabled:
             rows = []
         if rows != self.status:
@@ -178,7 +178,7 @@ class ViewerDisplay:
         return [FIXED_FRAME, *sorted(self.host.frames.names)]
 
     def start(self) -> None:
-        """Start the display: subscribe and read files."""
+        """Start the display, for example by subscribing and reading files."""
 
     def stop(self) -> None:
         """Stop the display permanently."""
@@ -194,34 +194,35 @@ class ViewerDisplay:
         self.frames_changed()
 
     def arranged(self, displays: Sequence[ViewerDisplay]) -> None:
-        """Handle displays that were added, removed, moved or renamed; each group precedes its contents."""
+        """Handle a change of the list of displays: one was added, removed, moved or renamed.
+
+        Args:
+            displays: all displays, each group before its contents.
+        """
 
     def frames_changed(self) -> None:
-        """Handle a change of frames or of the Fixed Frame.
-
-        Frames appeared, disappeared, gained or lost a transform, or the Fixed Frame changed.
-        """
+        """Handle a change of the set of frames, of the frames with a known pose, or of the Fixed Frame."""
 
     def receive(self, message: Any) -> None:
         """Handle a page's message for this display, such as a mesh status or a marker action."""
 
     def time_changed(self) -> None:
-        """Handle a pause, a resume, or a change of the time source."""
+        """Handle a pause or resume of the viewer's time, or a change of the synchronization source."""
 
     def time_reset(self) -> None:
-        """Handle a reset of time by discarding earlier messages."""
+        """Handle a reset of time: discard all earlier messages."""
 
     def messages(self) -> list[ServerMessage]:
         """Return the messages for a newly opened page, in addition to the display's row."""
         return []
 
     def data(self) -> list[Payload]:
-        """Return the content that a newly opened page needs to draw the same as the other pages."""
+        """Return the content that a newly opened page needs to draw the display like the other pages."""
         return []
 
 
 class DataDisplay(ViewerDisplay):
-    """A display whose content and status rows are added and removed one by one."""
+    """A display that sends content under keys, and adds and removes status rows one by one."""
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         super().__init__(host, identity, config)
@@ -240,17 +241,18 @@ class DataDisplay(ViewerDisplay):
     ) -> None:
         """Send content for pages to draw (see `pack_data`), and store it for pages that open later.
 
-        With `shrink`, pages with a slow connection receive as much of the content as the connection can carry.
+        The content replaces content that was sent under the same key. With `shrink`, the content is reduced for pages
+        with a slow connection.
         """
         pack = partial(pack_data, self.id, key=key, frame=frame, pose=pose, stamp=stamp_ns / 1e9)
         waits_under = f"data {self.id} {key}"
         packed = pack(content) if shrink is None else ScaledData(waits_under, content, shrink, pack)
         self.pages.send_data(waits_under, packed)
-        self._replaced(key)  # after the new content has been queued
+        self._replaced(key)  # marked after the new content has been queued
         self._data[key] = packed
 
     def forget(self, key: str | None = None) -> None:
-        """Remove the data that was sent under a key, or all data, from the pages."""
+        """Remove the content that was sent under a key, or all content, from the display and the pages."""
         for data_key in self._data if key is None else (key,):
             self._replaced(data_key)
         if key is None:
@@ -260,7 +262,7 @@ class DataDisplay(ViewerDisplay):
         self.pages.publish(DisplayForgotten(self.id, key))
 
     def set_status_row(self, name: str, level: StatusLevel, text: str) -> None:
-        """Add or replace a status row; a `Phrase` is shown in the language of each page."""
+        """Add or replace a status row; pages show a `Phrase` in their own language."""
         row = StatusRow(name, level, text)
         if self._rows.get(name) != row:
             self._rows[name] = row

@@ -1,4 +1,4 @@
-"""Displays that are drawn as markers; pages receive changed markers and the IDs of removed markers."""
+"""Base class of displays that are drawn as markers, of which pages receive only the changes."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ class StoredMarkersDisplay(TopicDisplay):
         self._meshes = MeshIndex(host.context.finder)
 
     def stop(self) -> None:
-        """Stop listening, and withdraw from pages the files that markers referred to."""
+        """Unsubscribe, and withdraw the pages' access to the files that markers referred to."""
         super().stop()
         self.context.meshes.replace(self.id, {})
 
     def data(self) -> list[Payload]:
-        """Return the markers."""
+        """Return the store, which is packed as all current markers."""
         return [self._store]
 
     def receive(self, message: Any) -> None:
-        """Show a page's report on a marker's mesh or texture in the status."""
+        """Show the error of a marker's mesh or texture that a page reported in the status."""
         if isinstance(message, MeshStatus) and message.error is not None and message.link in self._store:
             self.set_status_row(
                 message.link,
@@ -43,6 +43,6 @@ class StoredMarkersDisplay(TopicDisplay):
             )
 
     def show_markers(self) -> None:
-        """Send all changes of a message together."""
+        """Send the changes of the store to the pages together, and let them read the markers' files."""
         self.context.meshes.replace(self.id, self._meshes.folders)
         self.pages.send_data(self._store.key, self._store)

@@ -1,4 +1,4 @@
-"""Displays of a topic's messages: subscription, waiting for transforms, and page data."""
+"""Displays of the messages of a topic: subscription, waiting for transforms, and status."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from linkwright.rviz.displays.base.display import DataDisplay, DisplayHost, Pose
 
 
 class SideTopic:
-    """Subscribes to a topic in addition to the display's own; while time is paused, its messages wait.
+    """A subscription in addition to the display's own; its messages are queued while time is paused.
 
     Args:
         host: the display's host.
@@ -41,7 +41,7 @@ class SideTopic:
         self._held: deque[Any] = deque()
 
     def listen(self, topic: str, qos: QoSProfile) -> Phrase | None:
-        """Subscribe to a topic instead of the former one; return RViz's error text, or None on success."""
+        """Subscribe to a topic instead of the former one; return None, or RViz's error text on failure."""
         self.close()
         self._held = deque(maxlen=max(1, qos.depth))
         try:
@@ -51,7 +51,7 @@ class SideTopic:
         return None
 
     def close(self) -> None:
-        """Stop listening."""
+        """Unsubscribe, and discard the queued messages."""
         if self._subscription is not None:
             with suppress(ValueError):  # the node may already have been destroyed
                 self._host.context.node.destroy_subscription(self._subscription)
@@ -59,7 +59,7 @@ class SideTopic:
         self._held.clear()
 
     def resume(self) -> None:
-        """Handle the messages that were held while time was paused."""
+        """Handle the messages that were queued while time was paused."""
         while self._held and not self._host.time.paused:
             self._on_message(self._held.popleft())
 
@@ -71,7 +71,7 @@ class SideTopic:
 
 
 def camera_info_topic(image: str) -> str:
-    """Return the CameraInfo topic of an image by ROS's convention: in the namespace of the image."""
+    """Return the CameraInfo topic of an image topic, which by convention has the same namespace."""
     for transport in ("/compressed", "/compressedDepth", "/theora"):
         image = image.removesuffix(transport)
     return image.rpartition("/")[0] + "/camera_info"
@@ -109,7 +109,7 @@ class TopicDisplay(DataDisplay, ABC):
     `process_message`. The display subscribes only while it is enabled, as in RViz.
 
     Attributes:
-        last: the message that is currently shown, to show it again when a property changes.
+        last: the message that is currently shown, or None; `show_again` processes this message again.
     """
 
     MESSAGE: ClassVar[str] = ""
@@ -153,7 +153,8 @@ class TopicDisplay(DataDisplay, ABC):
 
         Args:
             message: a message of the type `MESSAGE`; it must not be changed.
-            pose: the pose of the message's frame at the message's time; None if the display is not `TRANSFORMED`.
+            pose: the pose of the message's frame in the Fixed Frame at the message's time; None if the display is not
+                `TRANSFORMED`.
         """
 
     def reset(self) -> None:
@@ -161,20 +162,20 @@ class TopicDisplay(DataDisplay, ABC):
         self.forget()
 
     def transforms_received(self) -> None:
-        """Handle new transforms."""
+        """Handle new transforms: process the queued messages that can be placed now."""
         self._try_waiting()
 
     def frame_of(self, message: Any) -> tuple[str, int]:
-        """Return the frame of a message and its time in nanoseconds (0 for the latest), from its header."""
+        """Return the frame and the stamp of a message's header; a stamp of 0 ns means the latest transform."""
         stamp = message.header.stamp
         return message.header.frame_id, stamp.nanoseconds
 
     def subscription(self) -> tuple[str, str, QoSProfile]:
-        """Return the type, topic and QoS of the subscription; an empty topic means none."""
+        """Return the message type, topic and QoS to subscribe with; the topic is empty if none is set."""
         return self.MESSAGE, self.properties.text(TOPIC).strip(), qos_of(self.properties)
 
     def most_waiting(self) -> int:
-        """Return the maximum number of messages that may wait for their transforms."""
+        """Return the maximum number of messages that are queued until their transforms are available."""
         return int(self.properties.number(TOPIC, FILTER_SIZE))
 
     # --- what subclasses call ----------------------------------------------------------------------------------
@@ -197,7 +198,7 @@ class TopicDisplay(DataDisplay, ABC):
         self._unsubscribe()
 
     def changed(self, path: Path) -> None:
-        """Subscribe to another topic, or with another QoS."""
+        """Subscribe again after the topic or its QoS has changed."""
         if path[0] == TOPIC and path != (TOPIC, FILTER_SIZE):
             self._restart()
 
@@ -206,7 +207,7 @@ class TopicDisplay(DataDisplay, ABC):
         self._restart()
 
     def frames_changed(self) -> None:
-        """Show the last message in the new Fixed Frame."""
+        """Show the last message in the new Fixed Frame, and the queued messages that can be placed now."""
         if self.fixed_frame_changed():
             self._waiting.clear()
             self.reset()
@@ -214,7 +215,7 @@ class TopicDisplay(DataDisplay, ABC):
         self._try_waiting()
 
     def time_changed(self) -> None:
-        """Show the messages that were received while time was paused."""
+        """Show the messages that were queued while time was paused."""
         self._try_waiting()
         while self._held and not self.host.time.paused:
             self._offer(self._held.popleft())
@@ -246,7 +247,7 @@ class TopicDisplay(DataDisplay, ABC):
         if not topic:
             self.set_status_row(self.TOPIC_ROW, "error", phrase("Error subscribing: Empty topic name"))
             return
-        from linkwright.graph import SubscriptionEventCallbacks  # a robot's view does not need it
+        from linkwright.graph import SubscriptionEventCallbacks  # not needed for the view of a robot
 
         try:
             self._subscription = self.context.node.create_subscription(
@@ -298,7 +299,10 @@ class TopicDisplay(DataDisplay, ABC):
             self._report_count()
 
     def _report_count(self) -> None:
-        """Show the number of messages, or the reason why there are none, which is updated until one arrives."""
+        """Show the number of messages and their rate, or the reason why there are none.
+
+        The reason is updated until a message arrives.
+        """
         if self._count > 0:
             seconds = time.monotonic() - self._since
             text = phrase("{count} messages received", count=self._count)
@@ -315,7 +319,7 @@ class TopicDisplay(DataDisplay, ABC):
         self._report_count_later()
 
     def _is_awaited(self) -> bool:
-        """Return whether messages are rare and the topic has a publisher for them."""
+        """Return whether the display is `OCCASIONAL` and the topic has a publisher of the right type."""
         message, topic, _ = self.subscription()
         publishers = self.context.published.publishers(topic)
         return self.OCCASIONAL and self._incompatibility is None and any(kind == message for _, kind in publishers)
@@ -329,7 +333,10 @@ class TopicDisplay(DataDisplay, ABC):
             self._report_timer = asyncio.get_running_loop().call_later(_COUNT_PERIOD, report)
 
     def _silence(self) -> Phrase:
-        """Return the reason why no messages arrive, with the topics of the same type if there is no publisher."""
+        """Return the reason why no messages arrive.
+
+        If the topic has no publisher, the reason names published topics of the same type.
+        """
         message, topic, _ = self.subscription()
         publishers = self.context.published.publishers(topic)
         types = {topic_type for _, topic_type in publishers}
@@ -399,7 +406,7 @@ class TopicDisplay(DataDisplay, ABC):
     def _could_not_place(self, reason: Phrase, stamp_ns: int, *, is_late: bool) -> None:
         """Report a message whose transform is not available.
 
-        If the message is only late, report it only if no message is placed for a while.
+        A transform that is only late is reported if no message could be placed for a second.
         """
         if not is_late:
             self.set_status_row(TRANSFORM, "error", reason)
@@ -409,7 +416,7 @@ class TopicDisplay(DataDisplay, ABC):
             self._late = asyncio.get_running_loop().call_later(_LATE, self._report_late)
 
     def _with_clocks(self, reason: Phrase, stamp_ns: int) -> Phrase:
-        """Return the reason, with advice about clocks if the message's stamp is far from the local time."""
+        """Return the reason, preceded by advice on the clocks if the stamp is far from the local time."""
         ahead = (stamp_ns - self.context.node.get_clock().now().nanoseconds) * 1e-9
         if abs(ahead) < _OTHER_CLOCK:
             return reason
@@ -438,7 +445,7 @@ class TopicDisplay(DataDisplay, ABC):
             self._late = None
 
     def _process(self, message: Any, pose: Pose | None) -> None:
-        """Show a message; an unexpected error does not prevent later messages from being shown."""
+        """Show a message, or log why that failed; later messages are shown all the same."""
         self.last = message
         try:
             self.process_message(message, pose)
@@ -470,7 +477,7 @@ class _Shown:
 
 
 class RecentDisplay(TopicDisplay):
-    """Shows the content of the most recent messages, each at the pose that its frame had at the message's time.
+    """A display of the most recent messages, each at the pose of its frame at the message's time.
 
     A subclass sets `LENGTH` to the property with the number of messages, where 0 means all messages. Without
     `LENGTH` the display shows one message.
@@ -506,7 +513,7 @@ class RecentDisplay(TopicDisplay):
         self._send(self._shown[-1])
 
     def changed(self, path: Path) -> None:
-        """Apply the new number of messages to show."""
+        """Subscribe again if necessary, or apply a new number of messages to show."""
         super().changed(path)
         if path == self.LENGTH:
             length = self._length()
@@ -531,7 +538,7 @@ class RecentDisplay(TopicDisplay):
         self.delete_status_row(_MESSAGE)
 
     def is_finite(self, *numbers: ArrayLike) -> bool:
-        """Return whether all numbers are finite; if not, report it in the status."""
+        """Return whether all numbers are finite; if not, show an error in the status."""
         if all(np.isfinite(number).all() for number in numbers):
             self.accept()
             return True

@@ -47,7 +47,7 @@ class MoveItDisplay(StoredMarkersDisplay):
         """Draw all markers again: an implementation calls `put` for each group, then `drawn`."""
 
     def description_topic(self) -> str:
-        """Return the topic of the robot's description."""
+        """Return the topic of the robot's description, or an empty string if none is set."""
         return self.properties.text(DESCRIPTION).strip()
 
     # --- what subclasses call ----------------------------------------------------------------------------------
@@ -69,7 +69,7 @@ class MoveItDisplay(StoredMarkersDisplay):
         self._report_frames()
 
     def report_unknown_joints(self, joints: list[str]) -> None:
-        """Show in the status the joints of a state that the robot does not have."""
+        """Show in the status which joints of a state the robot lacks; an empty list clears the warning."""
         if joints:
             names, more = quoted_names(joints[:5]), len(joints) - 5
             text = phrase("The robot has no joint {names}", names=names)
@@ -82,7 +82,7 @@ class MoveItDisplay(StoredMarkersDisplay):
     # --- lifecycle ---------------------------------------------------------------------------------------------
 
     def subscription(self) -> tuple[str, str, QoSProfile]:
-        """Return the type, topic and QoS of the subscription."""
+        """Return the message type, topic and QoS of the display's own topic."""
         return self.MESSAGE, self.properties.text(*self.TOPIC).strip(), QoSProfile(depth=10)
 
     def start(self) -> None:
@@ -96,12 +96,12 @@ class MoveItDisplay(StoredMarkersDisplay):
         super().stop()
 
     def enabled_changed(self) -> None:
-        """Subscribe only while the display is enabled."""
+        """Subscribe if the display is enabled, or unsubscribe."""
         super().enabled_changed()
         self._follow()
 
     def changed(self, path: Path) -> None:
-        """Subscribe to another topic, follow another description, or redraw."""
+        """Apply a new topic, a new description topic or the check box for all links, and draw again."""
         if path == self.TOPIC:
             self._restart()
             self._follow()
@@ -119,7 +119,7 @@ class MoveItDisplay(StoredMarkersDisplay):
         self._report_frames()
 
     def time_changed(self) -> None:
-        """Show the messages that were received while time was paused."""
+        """Handle the description and the messages that were queued while time was paused."""
         self._descriptions.resume()
         super().time_changed()
 

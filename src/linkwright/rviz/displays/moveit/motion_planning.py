@@ -31,9 +31,9 @@ _REQUEST_SPEC = PropertySpec(
 
 
 class MotionPlanningDisplay(PlanningSceneDisplay):
-    """Shows the planning scene, the planned motions, and the first and last states of the last motion.
+    """A display of the planning scene, the planned motions, and the last motion's first and last state.
 
-    The display does not plan: properties for planning requests are kept in the file and have no rows.
+    The display does not plan: the properties of planning requests stay in the file, but have no rows.
     """
 
     CLASS = "moveit_rviz_plugin/MotionPlanning"
@@ -60,12 +60,12 @@ class MotionPlanningDisplay(PlanningSceneDisplay):
         super().stop()
 
     def enabled_changed(self) -> None:
-        """Subscribe only while the display is enabled."""
+        """Subscribe if the display is enabled, or unsubscribe."""
         super().enabled_changed()
         self._follow_motions()
 
     def changed(self, path: Path) -> None:
-        """Subscribe to other motions, or restart the motion if looping was just switched on."""
+        """Subscribe to other motions, or play the last motion again if looping was just switched on."""
         if path == (PATH, TRAJECTORY_TOPIC):
             self._player.forget()
             self._follow_motions()
@@ -73,7 +73,7 @@ class MotionPlanningDisplay(PlanningSceneDisplay):
         self._player.property_changed(path)
 
     def time_changed(self) -> None:
-        """Show the messages that were received while time was paused."""
+        """Show the messages that were queued while time was paused."""
         super().time_changed()
         self._motions.resume()
 

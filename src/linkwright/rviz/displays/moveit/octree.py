@@ -33,7 +33,7 @@ MOST_CELLS = 1_000_000
 
 
 class BadOctreeError(ValueError):
-    """Raised when the data is not an octree; the text gives the reason."""
+    """Raised when the data is not an octree; the message gives the reason."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +51,7 @@ class Cells:
     probabilities: NDArray[np.float64]
 
     def chosen(self, mask: NDArray[np.bool_]) -> Cells:
-        """Return the cells selected by a mask."""
+        """Return the cells for which a boolean mask of shape (N,) is True."""
         return Cells(self.centers[mask], self.sizes[mask], self.probabilities[mask])
 
 
@@ -59,13 +59,13 @@ def read_octree(*, data: bytes, binary: bool, kind: str, resolution: float) -> C
     """Return the leaves of an octomap_msgs/msg/Octomap, including free ones.
 
     Args:
-        data: the data of the message.
-        binary: whether it is in the binary form.
-        kind: the class of the tree; its `id` in the message.
+        data: the bytes of the message's `data`.
+        binary: whether the data has the binary form, instead of the full form.
+        kind: the class of the tree, which is the message's `id`.
         resolution: the edge length of the smallest cells, metres.
 
     Raises:
-        BadOctreeError: the data ends too early or too late, or the class is unknown.
+        BadOctreeError: the data is too short or too long, or the class is unknown.
     """
     if not (math.isfinite(resolution) and resolution > 0.0):
         raise BadOctreeError(phrase("Invalid resolution of the octomap: {resolution}", resolution=resolution))

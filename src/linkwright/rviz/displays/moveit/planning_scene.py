@@ -37,10 +37,10 @@ _HELD = "Scene Robot holds"
 
 
 class PlanningSceneDisplay(MoveItDisplay):
-    """Shows the robot of a planning scene, its attached objects, and the objects around it.
+    """A display of the robot of a planning scene, its attached objects, and the objects around it.
 
-    The topic carries only changes, so the display requests the full scene from move_group when the display starts, and
-    when move_group appears later.
+    The topic carries only changes. The display therefore requests the full scene from move_group when the display
+    starts, or when move_group appears later.
     """
 
     CLASS = "moveit_rviz_plugin/PlanningScene"
@@ -60,7 +60,10 @@ class PlanningSceneDisplay(MoveItDisplay):
         return (NAMESPACE_SPEC, DESCRIPTION_SPEC, SCENE_TOPIC_SPEC, GEOMETRY_SPEC, scene_robot_spec(self.link_names))
 
     def description_topic(self) -> str:
-        """Return the description topic in the namespace of move_group, if there is one."""
+        """Return the topic of the robot's description, in move_group's namespace unless it is absolute.
+
+        Without a namespace, or if no topic is set, return the property's value.
+        """
         name, namespace = super().description_topic(), self.properties.text(NAMESPACE).strip("/ ")
         return f"/{namespace}/{name}" if namespace and name and not name.startswith("/") else name
 
@@ -75,12 +78,12 @@ class PlanningSceneDisplay(MoveItDisplay):
         super().stop()
 
     def enabled_changed(self) -> None:
-        """Subscribe and request the full scene when the display is enabled; unsubscribe when it is disabled."""
+        """Subscribe and request the full scene if the display is enabled, or unsubscribe."""
         super().enabled_changed()
         self._ask()
 
     def changed(self, path: Path) -> None:
-        """Apply a changed property; request the scene again if the move_group namespace or the topic changes."""
+        """Apply a changed property; a new namespace or topic also requests the full scene again."""
         if path == (NAMESPACE,):
             self._restart()
             self._follow()
@@ -102,13 +105,13 @@ class PlanningSceneDisplay(MoveItDisplay):
         super().reset()
 
     def robot_changed(self) -> None:
-        """Apply the last state again, because that state may have arrived before the robot's description."""
+        """Apply the last state to the new robot; the state may have arrived before the description."""
         self.scene.state = JointPositions()
         if self._state is not None:
             self._apply_state(self._state)
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
-        """Apply a full scene or changes to it."""
+        """Apply a full scene, or changes to the current one."""
         before = self.scene.name
         self.scene.apply(message)
         if self.scene.name != before:
@@ -191,10 +194,10 @@ class PlanningSceneDisplay(MoveItDisplay):
         if self.properties.set_read_only(path, self.scene.name):
             self.pages.publish(PropertyChanged(self.property_id(path), self.scene.name))
 
-    # --- asking for the whole scene ----------------------------------------------------------------------------
+    # --- requesting the full scene -----------------------------------------------------------------------------
 
     def _ask(self) -> None:
-        """Request the scene from move_group immediately or as soon as it is available."""
+        """Request the full scene from move_group, now or as soon as its service is available."""
         self._leave()
         if not self.enabled:
             return

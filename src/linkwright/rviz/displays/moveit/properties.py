@@ -23,7 +23,7 @@ TRAJECTORY_TOPIC = "Trajectory Topic"
 
 
 def fraction(name: str, default: float, description: str) -> PropertySpec:
-    """Return an opacity property with the given name."""
+    """Return the declaration of a property with a value from 0 to 1, such as an opacity."""
     return PropertySpec(name, "float", default, description, minimum=0.0, maximum=1.0)
 
 
@@ -63,7 +63,7 @@ ATTACHED = PropertySpec("Attached Body Color", "color", "#963296", "Colour of at
 
 
 def visibility(visual: str, collision: str) -> tuple[PropertySpec, ...]:
-    """Return the check boxes for the visuals and the collisions of links."""
+    """Return the declarations of the check boxes for the visuals and the collisions of links."""
     return (
         PropertySpec(visual, "bool", True, "Draw the visual geometry."),
         PropertySpec(collision, "bool", False, "Draw the collision geometry."),
@@ -74,7 +74,7 @@ SHOWN = visibility("Show Robot Visual", "Show Robot Collision")
 
 
 def scene_robot_spec(links: Sequence[str]) -> PropertySpec:
-    """Return the property group of the robot in the scene."""
+    """Return the declaration of the property group ``Scene Robot``."""
     return PropertySpec(
         ROBOT,
         "group",
@@ -84,7 +84,7 @@ def scene_robot_spec(links: Sequence[str]) -> PropertySpec:
 
 
 def path_specs(links: Sequence[str]) -> tuple[PropertySpec, ...]:
-    """Return the properties that control how a motion is played."""
+    """Return the declarations of the properties that control how a motion is played."""
     return (
         PropertySpec(
             TRAJECTORY_TOPIC,
@@ -115,7 +115,7 @@ def path_specs(links: Sequence[str]) -> tuple[PropertySpec, ...]:
 
 
 def links_spec(links: Sequence[str]) -> PropertySpec:
-    """Return the check boxes of the links that have shapes."""
+    """Return the declaration of the group with the check boxes of the links that have shapes."""
     boxes = tuple(
         PropertySpec(name, "bool", True, "Draw this link.", children=(alpha("Opacity of this link."),))
         for name in links
@@ -132,14 +132,14 @@ def rgb(text: str) -> tuple[float, float, float]:
 
 
 def rgba(message: object) -> Color:
-    """Return the RGBA components of a std_msgs/msg/ColorRGBA."""
+    """Return the red, green, blue and alpha components of a std_msgs/msg/ColorRGBA."""
     parts = (getattr(message, part) for part in "rgba")
     red, green, blue, opacity = (min(max(float(part), 0.0), 1.0) for part in parts)
     return red, green, blue, opacity
 
 
 def link_alphas(properties: PropertyStore, robot: PosableRobot, above: Path = ()) -> dict[str, float]:
-    """Return the opacity of each link; 0 for disabled links."""
+    """Return the opacity of each link by name; 0 for links whose check box is off."""
     found = {}
     for name in robot.shaped_links:
         if name != ALL_LINKS:

@@ -1,4 +1,4 @@
-"""Draws a robot as markers in the state given by a message; tf is not used to place its links."""
+"""Draws a robot as markers in a state from a message; the links are placed without tf."""
 
 from __future__ import annotations
 
@@ -54,8 +54,8 @@ class Look:
         alpha: the opacity of all links.
         alphas: the opacity of individual links, which is multiplied by `alpha`; links with 0 are not drawn.
         color: the RGB colour of all links; None to use the links' own colours.
-        links: the colours of individual links.
-        only: the links that are drawn; None to draw all of them.
+        links: the colours of individual links, which take precedence over `color`.
+        only: the names of the links that are drawn; None to draw all of them.
     """
 
     namespace: str
@@ -69,7 +69,7 @@ class Look:
 
 
 class UnusableStateError(ValueError):
-    """Raised when a robot state cannot be shown; the text gives the reason."""
+    """Raised when a robot state cannot be shown; the message gives the reason."""
 
 
 class PosableRobot:
@@ -108,7 +108,7 @@ class PosableRobot:
         return name in self._joints
 
     def links_moved_by(self, joints: AbstractSet[str]) -> set[str]:
-        """Return the links whose poses depend on any of these joints."""
+        """Return the names of all links below any of these joints."""
         pending = [self._children[name] for name in joints if name in self._children]
         found: set[str] = set()
         while pending:
@@ -119,7 +119,7 @@ class PosableRobot:
         return found
 
     def set_state(self, state: JointPositions, message: Any) -> list[str]:
-        """Set the joint positions of a state from a moveit_msgs/msg/RobotState.
+        """Copy the joint positions and the root's pose of a moveit_msgs/msg/RobotState to a state.
 
         Returns:
             The joints of the message that the robot does not have.
@@ -139,12 +139,16 @@ class PosableRobot:
                 )
             )
         for name, transform in zip(several.joint_names, several.transforms, strict=True):
-            if name not in self._joints:  # the virtual joint of an SRDF, which connects the root to the world
+            if name not in self._joints:  # a virtual joint of the SRDF, which moves the root
                 self.set_root(state, several.header.frame_id, transform)
         return unknown
 
     def set_root(self, state: JointPositions, frame: str, transform: Any) -> None:
-        """Set the root's pose in a state from a geometry_msgs/msg/Transform that is relative to a frame."""
+        """Set the root's pose in a state from a geometry_msgs/msg/Transform relative to `frame`.
+
+        Raises:
+            UnusableStateError: a number is not finite.
+        """
         at, turn = transform.translation, transform.rotation
         if not all(map(math.isfinite, (at.x, at.y, at.z, turn.x, turn.y, turn.z, turn.w))):
             raise UnusableStateError(phrase("The state has invalid floating point values (nans or infs)"))
@@ -153,7 +157,14 @@ class PosableRobot:
         state.root_in_frame = (x, y, z, qx, qy, qz, qw)
 
     def set_joints(self, state: JointPositions, names: Any, positions: Any) -> list[str]:
-        """Set joint positions in a state; see `set_state`."""
+        """Set the positions of some joints in a state, in rad or m.
+
+        Returns:
+            The names of joints that the robot does not have.
+
+        Raises:
+            UnusableStateError: the lists have different lengths, or a position is not finite.
+        """
         if len(names) != len(positions):
             raise UnusableStateError(
                 phrase(
@@ -212,7 +223,7 @@ class PosableRobot:
 
 @dataclass(frozen=True, slots=True)
 class _PoseOf:
-    """A transform with the attribute names of a pose."""
+    """A transform under the attribute names of a pose message."""
 
     position: Any
     orientation: Any
@@ -260,7 +271,10 @@ def _in_link(shape: Shape) -> Transform:
 
 
 def _own_color(shape: Shape) -> Color:
-    """Return the colour from the description, which tints a mesh's own materials; white changes nothing."""
+    """Return the colour of a shape in the description, by default red.
+
+    The colour of a mesh is white, except of STL meshes, because it is multiplied by the mesh's own materials.
+    """
     if shape.kind == "mesh" and not (shape.format or "").startswith("stl"):
         alpha = shape.color[3] if shape.color else 1.0
         return (1.0, 1.0, 1.0, alpha)

@@ -29,7 +29,7 @@ _HIGHLIGHTS = "Highlights"
 
 
 class RobotStateDisplay(MoveItDisplay):
-    """Shows the robot in the state of the topic's last message, with the link colours that the message specifies."""
+    """A display of the robot in the state of the last message, with the message's link colours."""
 
     CLASS = "moveit_rviz_plugin/RobotState"
     MESSAGE = "moveit_msgs/msg/DisplayRobotState"

@@ -39,7 +39,7 @@ class SceneObject:
 
     @classmethod
     def of(cls, message: Any) -> SceneObject:
-        """Return the object that a message describes."""
+        """Return the object that a moveit_msgs/msg/CollisionObject describes."""
         shapes: dict[str, Any] = {name: tuple(getattr(message, name)) for name in _SHAPES}
         return cls(message.id, message.header.frame_id.removeprefix("/"), message.pose, **shapes)
 
@@ -49,7 +49,10 @@ class SceneObject:
         return replace(self, **shapes)
 
     def moved(self, message: Any) -> SceneObject:
-        """Return a copy of the object with the frame and the poses of a message."""
+        """Return a copy of the object with the frame and the poses of a message.
+
+        Poses of shapes that the message omits stay unchanged.
+        """
         poses: dict[str, Any] = {name: tuple(found) for name in _POSES if (found := getattr(message, name))}
         return replace(self, frame=message.header.frame_id.removeprefix("/"), pose=message.pose, **poses)
 
@@ -79,8 +82,8 @@ class Scene:
         name: the name of the scene.
         is_whole: whether the full scene is known, and not only the changes since the subscription.
         state: the robot's state.
-        octomap: the cells of the octomap, if there is one.
-        problems: the problems, by subject.
+        octomap: the cells and the pose of the octomap, or None.
+        problems: the problems with objects, by object ID.
     """
 
     def __init__(self) -> None:
@@ -94,7 +97,10 @@ class Scene:
         self._colors: dict[str, Color] = {}
 
     def apply(self, message: Any) -> None:
-        """Apply a moveit_msgs/msg/PlanningScene, full or as a difference, except for the robot's joints."""
+        """Apply a moveit_msgs/msg/PlanningScene, either a full scene or a difference.
+
+        The caller applies the robot's joint positions.
+        """
         if not message.is_diff:
             self._objects.clear()
             self._held.clear()

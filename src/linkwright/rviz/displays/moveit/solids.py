@@ -31,21 +31,21 @@ _ROUND = 24
 
 
 class BadObjectError(ValueError):
-    """Raised when a collision object cannot be drawn; the text gives the reason."""
+    """Raised when a collision object cannot be drawn; the message gives the reason."""
 
 
 def object_markers(message: Any, namespace: str, color: Color, *, frame: str, base: Transform) -> list[MarkerShape]:
     """Return the markers of a moveit_msgs/msg/CollisionObject.
 
     Args:
-        message: the object. A pose that is not set means no translation and no rotation.
+        message: the object. A pose that is not set is the identity.
         namespace: the markers' namespace.
         color: the colour of all shapes.
         frame: the frame that the markers follow.
         base: the pose, in `frame`, of the frame in the message's header.
 
     Raises:
-        BadObjectError: a number is not finite, a shape has no pose, or the kind of shape does not exist.
+        BadObjectError: a number is not finite, the numbers of shapes and poses differ, or a primitive is not valid.
     """
     in_frame = compose(base, _pose(message.pose))
     groups: tuple[tuple[str, Sequence[Any], Sequence[Any], Callable[[Any], Form]], ...] = (
@@ -121,7 +121,10 @@ def _cone(_: Any, sizes: list[float]) -> Form:
 
 
 def _prism(shape: Any, sizes: list[float]) -> Form:
-    """Return the polygon extruded to a height and centred on the polygon's plane; its corners are in order."""
+    """Return a polygon extruded to a height; the polygon's plane is halfway between both faces.
+
+    The corners of the polygon are in order.
+    """
     flat = [(point.x, point.y) for point in shape.polygon.points]
     if len(flat) < 3:
         raise BadObjectError(phrase("The polygon of a prism has {corners} corners", corners=len(flat)))

@@ -34,10 +34,10 @@ class Motion:
     """A robot's motion as a sequence of states.
 
     Attributes:
-        states: the states; the first one is the start state.
+        states: the states, beginning with the start state.
         durations: the time from each state to the next, seconds.
-        joints: the joints that move.
-        unknown: the joints of the message that the robot does not have.
+        joints: the names of the joints that move.
+        unknown: the names of joints in the message that the robot does not have.
     """
 
     states: list[JointPositions]
@@ -108,12 +108,12 @@ def shown_for(text: str, duration: float) -> float:
 
 
 class MotionPlayer:
-    """Shows the states of a motion in sequence.
+    """Plays motions, by showing their states one after the other.
 
     Args:
         display: the display that has the properties.
         above: the path of the group that contains the properties.
-        show: called when the state to draw changes.
+        show: called when another state is to be drawn.
     """
 
     def __init__(self, display: MoveItDisplay, above: Path, show: Callable[[], None]) -> None:
@@ -128,20 +128,19 @@ class MotionPlayer:
 
     @property
     def is_playing(self) -> bool:
-        """Whether more states of the motion follow."""
+        """Whether a motion is being played."""
         return self._timer is not None
 
     @property
     def state(self) -> JointPositions | None:
-        """The state to draw, or None after the end of the motion."""
+        """The state to draw, or None if no motion is being played."""
         return self.motion.states[self._place] if self.motion and self.is_playing else None
 
     def play(self, message: Any) -> None:
         """Play a moveit_msgs/msg/DisplayTrajectory, immediately or after the current motion.
 
-        The new motion starts immediately if no motion is playing, or if the properties let new motions interrupt the
-        current
-        one or make it loop.
+        The new motion waits for the current one to end, unless the properties let it interrupt the current motion, or
+        make the current motion loop.
         """
         if self.is_playing and not self._flag("Interrupt Display") and not self._flag(_LOOP):
             self._next = message
@@ -155,7 +154,7 @@ class MotionPlayer:
             self.begin_again()
 
     def begin_again(self) -> None:
-        """Restart the last motion after the robot was replaced."""
+        """Play the last motion from its beginning, with the display's current robot."""
         if self._message is not None:
             self._begin()
 
@@ -165,7 +164,7 @@ class MotionPlayer:
         self._message = self._next = self.motion = None
 
     def draw(self, group: str) -> None:
-        """Draw the current state and the trail in marker groups of the display."""
+        """Put the current state and the trail into two marker groups of the display."""
         robot, motion = self._display.robot, self.motion
         now, trail = [], []
         if robot is not None and motion is not None:
@@ -236,7 +235,7 @@ class MotionPlayer:
 
 
 class TrajectoryDisplay(MoveItDisplay):
-    """Plays the motions published on a topic."""
+    """A display that plays the motions published on a topic."""
 
     CLASS = "moveit_rviz_plugin/Trajectory"
     MESSAGE = "moveit_msgs/msg/DisplayTrajectory"
@@ -255,7 +254,7 @@ class TrajectoryDisplay(MoveItDisplay):
         self._player.play(message)
 
     def changed(self, path: Path) -> None:
-        """Redraw, and restart the motion if looping was just switched on."""
+        """Apply a changed property; play the last motion again if looping was just switched on."""
         super().changed(path)
         self._player.property_changed(path)
 

@@ -1,4 +1,4 @@
-"""Draws the cells of octrees as markers, and defines the properties that select cells and colours."""
+"""Draws the cells of octrees as markers, and declares the properties that select cells and colours."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ VOXEL_COLORING = PropertySpec(
 
 
 def rendered(cells: Cells, rendering: str) -> Cells:
-    """Return the cells to draw for a value of the property `VOXEL_RENDERING`."""
+    """Return the cells that a value of `VOXEL_RENDERING` selects: all, occupied or free ones."""
     if rendering == _ALL:
         return cells
     return cells.chosen((cells.probabilities > _LIKELY) == (rendering == _OCCUPIED))
@@ -48,7 +48,8 @@ def octomap_markers(
         frame: the frame that the markers follow.
         base: the pose of the tree in `frame`.
         alpha: the opacity of all cells.
-        by_probability: whether colours show the probability that a cell is occupied, instead of its height.
+        by_probability: whether the colour of a cell shows the probability that the cell is occupied, instead of its
+            height.
     """
     cells = cells.chosen(_is_seen(cells))
     if not len(cells.sizes):
@@ -90,7 +91,7 @@ _RAINBOW = np.array([colorsys.hsv_to_rgb(0.8 * (1.0 - step / 63.0), 1.0, 1.0) fo
 
 
 def _is_seen(cells: Cells) -> NDArray[np.bool_]:
-    """Return a mask of the visible cells: those with at least one side without a neighbour of the same size."""
+    """Return a mask of the cells that have a side without a neighbour of the same size."""
     seen = np.ones(len(cells.sizes), dtype=np.bool_)
     for size in np.unique(cells.sizes):
         mask = cells.sizes == size
@@ -110,9 +111,9 @@ _STEPS = (1, -1, 1 << _BITS, -(1 << _BITS), 1 << 2 * _BITS, -(1 << 2 * _BITS))
 
 
 def _codes(places: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return an integer code for each cell's grid indices.
+    """Return a unique integer for the grid indices of each cell.
 
-    A grid of cells of one size has 2^16 cells along each axis.
+    There are at most 2^16 cells of one size along each axis.
     """
     shifted = places + (1 << (_BITS - 1))
     codes: NDArray[np.int64] = shifted[:, 0] << 2 * _BITS | shifted[:, 1] << _BITS | shifted[:, 2]

@@ -1,1 +1,1 @@
-"""Edit a world in the page."""
+"""World editing in the page."""

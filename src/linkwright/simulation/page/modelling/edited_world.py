@@ -1,4 +1,4 @@
-"""A world that is being edited: its text, its history for undo, and its file."""
+"""A world that is being edited: its text, its undo history and its file."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class EditedWorld:
     Args:
         text: the text of the world.
         path: the file from whose folder relative addresses are resolved; it need not exist.
-        packages: the finder of packages, and so of models.
+        packages: the package finder, which also locates models.
         content: the content of `path` if the world is saved there; None for a world without a file.
 
     Attributes:
@@ -107,16 +107,22 @@ class EditedWorld:
 
     @property
     def is_outdated(self) -> bool:
-        """Whether the file has changed since it was read or saved."""
+        """Whether another program has changed the file since the file was read or saved.
+
+        False if the world has no file, or if the file cannot be read.
+        """
         if self._content is None:
             return False
         try:
             return self.path.read_bytes() != self._content
         except OSError:
-            return False  # the file does not exist or cannot be read: only the text here exists
+            return False  # The text here is then the only readable copy.
 
     def reserve(self, names: Iterable[str]) -> None:
-        """Keep new models and lights from taking these names, unless the world itself has them."""
+        """Prevent new models and lights from taking these names.
+
+        Names that the world already uses are not reserved.
+        """
         world = self.world
         self.world = WorldText(world.text, world.path, world.finder, frozenset(names) - world.entities.keys())
 
@@ -152,7 +158,7 @@ class EditedWorld:
                 file.
 
         Raises:
-            EditError: the world was not saved; the text gives the reason.
+            EditError: the world was not saved; the message gives the reason.
         """
         target = self.path if name is None else self._named(name)
         if target == self.path and self._content is not None:
@@ -175,7 +181,7 @@ class EditedWorld:
             self.world = WorldText(self.world.text, target, self.world.finder, self.world.reserved)
 
     def store_unsaved(self, folder: Path) -> Diagnostic:
-        """Write an unsaved text into a folder, replacing earlier texts of the same world.
+        """Write the unsaved text to a recovery file in a folder, replacing earlier texts of the world.
 
         Returns:
             The finding that names the file (RVIZ301), or that reports the loss of the text (RVIZ104).
@@ -195,14 +201,14 @@ class EditedWorld:
         return self._mark + self.world.text.encode(self._encoding, "xmlcharrefreplace")
 
     def _named(self, name: str) -> Path:
-        """Return the file that the user names.
+        """Return the absolute path of a file name that the user entered.
 
         Raises:
-            EditError: the name is not that of a world file.
+            EditError: the name is not a valid name of a world file.
         """
         try:
             path = Path(os.path.normpath(self.path.absolute().parent / Path(name.strip()).expanduser()))
-        except (ValueError, RuntimeError):  # RuntimeError: there is no such user
+        except (ValueError, RuntimeError):  # RuntimeError: the user after ``~`` does not exist.
             path = Path()
         if "\0" in name or not is_world(path.name) or path.suffix == _XACRO:
             raise EditError(phrase("'{name}' is not a name for a world: it must end in .world or .sdf", name=name))

@@ -1,4 +1,4 @@
-"""The messages between pages that edit a world and the server."""
+"""Conversions between an edited world and the messages of the pages that edit it."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from linkwright.sdf.resources import Missing, ResourceFinder, model_file
 
 
 def entities_of(world: WorldText) -> list[WorldEntity]:
-    """Return the models and lights of a world."""
+    """Return the models and lights of a world, as they are sent to pages."""
     return [_entity(entity) for entity in world.entities.values()]
 
 
@@ -56,14 +56,14 @@ def _entity(entity: Entity) -> WorldEntity:
 
 
 def choices(packages: PackageFinder) -> ModelChoices:
-    """Return the models on the search path for the page to choose from."""
+    """Return the message that offers the models on the search path, sorted by name."""
     found = ResourceFinder(packages).models()
     names = sorted(name for name, folder in found.items() if not isinstance(model_file(folder), Missing))
     return ModelChoices([ModelChoice(name, f"model://{name}") for name in names])
 
 
 def apply_edit(world: WorldText, message: PageMessage) -> WorldText:
-    """Return a world with the edit of a page applied.
+    """Return the world after applying the edit that a page requests.
 
     Raises:
         EditError: the edit is not possible.

@@ -1,4 +1,4 @@
-"""Edit a world in the page: pages edit its text, and the simulation loads it.
+"""World editing in the page: pages edit the text of the world, and the simulation loads the result.
 
 The text is read from the file in the simulator's parameter ``world``. If there is no such file, or if it contains
 another world, the text is the description that the simulator publishes. All pages edit the same text, and their
@@ -40,7 +40,7 @@ _PATIENCE = 30.0
 
 
 class ModellingFeature(PageFeature):
-    """Sends the models and lights of the world to pages, and edits the world at their request."""
+    """The feature that shows pages the models and lights of the world, and applies the pages' edits."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -53,7 +53,7 @@ class ModellingFeature(PageFeature):
         self._worker: asyncio.Task[None] | None = None
 
     def opening(self) -> list[ServerMessage]:
-        """Return whether the world can be edited and, while a user is editing it, its content."""
+        """Return the message that describes whether the world can be edited, and its entities once read."""
         if not self._listening:
             self._listening = True
             self.context.graph_changes.watch(self._review)
@@ -61,13 +61,16 @@ class ModellingFeature(PageFeature):
         return [self._state()]
 
     def page_closed(self, page: Page) -> None:
-        """Stop listening after the last page has closed; edits are kept."""
+        """Stop watching the graph after the last page has closed; edits are kept."""
         if self._listening and len(self.context.pages) == 0:
             self._listening = False
             self.context.graph_changes.unwatch(self._review)
 
     def keep_unsaved(self) -> list[Diagnostic]:
-        """Store the text of an unsaved world, and return the findings about it."""
+        """Store the text of an unsaved world in the recovery folder, and return the finding about it.
+
+        The list is empty if nothing is unsaved.
+        """
         if self._edited is None or not self._edited.unsaved:
             return []
         return [self._edited.store_unsaved(recovery_folder())]
@@ -80,7 +83,7 @@ class ModellingFeature(PageFeature):
             self._worker.cancel()
 
     def receive(self, page: Page, message: Any) -> None:
-        """Queue a request of a page; requests are carried out in the order of their arrival."""
+        """Queue a request of a page; requests are handled in the order in which they arrive."""
         self._waiting.put_nowait((page, message))
         if self._worker is None:
             self._worker = asyncio.get_running_loop().create_task(self._work())
@@ -88,7 +91,7 @@ class ModellingFeature(PageFeature):
     # --- messages to pages -------------------------------------------------------------------------------------
 
     def _is_available(self) -> bool:
-        """Return whether there is a simulation whose world is known."""
+        """Return whether a simulation publishes the description of its world."""
         return bool(self.context.node.get_publishers_info_by_topic(_DESCRIPTION))
 
     def _review(self) -> None:
@@ -162,7 +165,10 @@ class ModellingFeature(PageFeature):
         self._publish()
 
     async def _world(self) -> EditedWorld:
-        """Return the edited world, after reading it again if its file has changed and it has no unsaved edits."""
+        """Return the edited world, which is read on first use.
+
+        A world without unsaved edits is read again if its file has changed.
+        """
         from linkwright.simulation.page.modelling.edited_world import EditedWorld
 
         edited, packages = self._edited, self.context.finder
@@ -187,7 +193,7 @@ class ModellingFeature(PageFeature):
         name = await self._simulated_file()
         path = await asyncio.to_thread(ResourceFinder(packages).world, name) if name else None
         if path is not None:
-            with suppress(EditError, LinkwrightError):  # the file may differ on another machine
+            with suppress(EditError, LinkwrightError):  # On another machine, this path may be a different file.
                 found = await asyncio.to_thread(EditedWorld.of_file, path.absolute(), packages)
                 if found.world.world.name == described.world.world.name:
                     await asyncio.to_thread(found.reserve, described.world.entities)
@@ -195,7 +201,10 @@ class ModellingFeature(PageFeature):
         return described
 
     async def _simulated_file(self) -> str:
-        """Return the value of the simulator's parameter ``world``; empty if there is none."""
+        """Return the value of the simulator's parameter ``world``.
+
+        An empty string is returned if there is no such parameter, or if the simulator does not respond.
+        """
         node = self.context.node
         publishers = node.get_publishers_info_by_topic(_DESCRIPTION)
         if not publishers:
@@ -242,14 +251,14 @@ class ModellingFeature(PageFeature):
             node.destroy_subscription(subscription)
 
     async def _load(self, page: Page, edited: EditedWorld) -> None:
-        """Replace the simulated world by the edited one."""
+        """Ask the simulator to load the edited world in place of the current one."""
         resource = get_message("simulation_interfaces/msg/Resource")
         named = resource(uri=str(edited.path.absolute()), resource_string=edited.world.text)
         fields = {"world_resource": named, "ignore_missing_or_unsupported_assets": True}
         await self._ask(page, _LOAD, "/load_world", fields)
 
     async def _ask(self, page: Page, kind: str, name: str, fields: dict[str, Any] | None = None) -> None:
-        """Call a service and wait for its response."""
+        """Call a service, wait for the response, and report a timeout to the page."""
         done: asyncio.Future[None] = asyncio.get_running_loop().create_future()
 
         def answered(_: Any) -> None:
@@ -264,7 +273,7 @@ class ModellingFeature(PageFeature):
 
 
 def _edit(edited: EditedWorld, message: PageMessage) -> Callable[[], None]:
-    """Return a function that applies a page's request to a world; it is slow and belongs in a thread."""
+    """Return a slow function, to be run in a thread, that applies a page's request to a world."""
     from linkwright.simulation.page.modelling.entities import apply_edit
 
     if isinstance(message, UndoWorld):

@@ -1,6 +1,6 @@
 """ros2_control hardware made of simulated joints and sensors.
 
-It replaces ``gazebo_ros2_control/GazeboSystem``, ``gz_ros2_control/GazeboSimSystem``,
+The hardware replaces ``gazebo_ros2_control/GazeboSystem``, ``gz_ros2_control/GazeboSimSystem``,
 ``ign_ros2_control/IgnitionSystem``, and any other plugin that a description in a simulated world names.
 
 Source: gazebo_ros2_control and gz_ros2_control (interfaces, holding of joints, texts).
@@ -31,16 +31,16 @@ _KINDS = (POSITION, VELOCITY, EFFORT)
 
 
 class ControlledModel(Protocol):
-    """The interface of the plugin that the hardware uses."""
+    """The part of the interface of `SimulatedControl` that the hardware uses."""
 
     simulation: Simulation
     place: PluginPlace
 
     def joint(self, name: str) -> str:
-        """Return the name in the simulation of a movable joint of the plugin's model."""
+        """Return the full name of a movable joint of the plugin's model, as used in the simulation."""
 
     def random_of(self, name: str) -> np.random.Generator:
-        """Return a random number generator for a sensor."""
+        """Return the random number generator of a sensor, which depends on the seed."""
 
 
 class SimulatedSystem(Hardware):
@@ -51,7 +51,7 @@ class SimulatedSystem(Hardware):
         logger: the logger of the hardware.
         plugin: the plugin of the model.
         holds: whether joints hold their positions while they have no command.
-        gain: the fraction of a position error that joints correct with each update; NaN corrects it immediately.
+        gain: the fraction of a position error that each update corrects; with NaN, an update corrects the whole error.
         values: parameters of the plugin's node, which may include gains of PID controllers.
 
     Attributes:
@@ -99,7 +99,7 @@ class SimulatedSystem(Hardware):
         self._sensors = self._found_sensors(plugin)
 
     def _forget(self, component: str) -> None:
-        """Remove a component that the model lacks, with its interfaces."""
+        """Remove the interfaces of a component that the model does not have."""
         self.states = [state for state in self.states if state.component != component]
         self.commands = [command for command in self.commands if command.component != component]
 
@@ -121,19 +121,19 @@ class SimulatedSystem(Hardware):
         return found
 
     def begin(self) -> None:
-        """Reset the joints and sensors when the world restarts."""
+        """Restore the initial state of the joints when the world restarts, and keep their modes."""
         for joint in self._joints.values():
             mode = joint.mode
             joint.begin()
             joint.set_mode(mode)
 
     def on_activate(self) -> None:
-        """Read the joints, so that controllers that start before the first update know their positions."""
+        """Read the joints, so that controllers that start before the first update get valid positions."""
         for joint in self._joints.values():
             joint.read()
 
     def perform_switch(self, start: Collection[str], stop: Collection[str]) -> None:
-        """Switch the interfaces that command the joints."""
+        """Select the interface that commands each joint, after controllers have started or stopped."""
         for name, joint in self._joints.items():
             if f"{name}/{joint.mode}" in stop:
                 joint.set_mode("")
@@ -142,14 +142,14 @@ class SimulatedSystem(Hardware):
                     joint.set_mode(kind)
 
     def read(self, time_ns: int, period_s: float) -> None:
-        """Read joints and sensors."""
+        """Update the state interfaces of the joints and sensors."""
         for joint in self._joints.values():
             joint.read()
         for sensor in self._sensors:
             sensor.read()
 
     def write(self, time_ns: int, period_s: float) -> None:
-        """Command the joints."""
+        """Apply the commands to the joints."""
         for joint in self._joints.values():
             joint.write(period_s)
 

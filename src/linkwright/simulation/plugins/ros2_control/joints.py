@@ -19,7 +19,9 @@ _FASTEST = 1000.0
 
 
 class SimulatedJoint:
-    """A simulated joint of the hardware; call `begin` after all joints are created, to compile the model only once.
+    """A simulated joint of the hardware.
+
+    Call `begin` only after all joints are created, so that the model is compiled only once.
 
     A constraint holds positions, because Gazebo puts joints exactly where they are commanded. A motor with the effort
     limit of the joint holds velocities. Efforts and PID controllers apply forces.
@@ -28,9 +30,9 @@ class SimulatedJoint:
         simulation: the simulation of the world.
         name: the joint's name in the simulation.
         described: the joint in ``<ros2_control>``.
-        states, commands: its interfaces, by kind.
-        holds: whether it holds its position while it has no command.
-        gain: the fraction of a position error that it corrects with each update; NaN corrects it immediately.
+        states, commands: the interfaces of the joint, by kind.
+        holds: whether the joint holds its position while it has no command.
+        gain: the fraction of a position error that each update corrects; with NaN, an update corrects the whole error.
         pids: PID controllers that apply forces, by the kind of command that they follow.
     """
 
@@ -70,16 +72,16 @@ class SimulatedJoint:
             self._servo = simulation.add_servo(name, _FASTEST)
 
     def begin(self) -> None:
-        """Set the initial position of the description, and hold it."""
+        """Set the initial position of the description if there is one, and clear the command mode."""
         for state in self._described.states:
             if state.name == POSITION and not isnan(state.initial_value):
                 self._simulation.set_joint_position(self._name, state.initial_value)
         self.set_mode("")
 
     def set_mode(self, kind: str) -> None:
-        """Set the kind of the interface that commands the joint; empty for none."""
+        """Set the kind of interface that commands the joint; empty if no controller commands the joint."""
         before, self._mode = self._mode, kind
-        if before in (VELOCITY, EFFORT) and self._motor is not None:  # already holds 0; a change recompiles the model
+        if before in (VELOCITY, EFFORT) and self._motor is not None:  # other motors already hold 0
             self._motor.target = 0.0
         if self._pushed:
             self._simulation.push_joint(self._name, 0.0)
@@ -93,7 +95,7 @@ class SimulatedJoint:
 
     @property
     def mode(self) -> str:
-        """The kind of the interface that commands the joint; empty for none."""
+        """The kind of interface that commands the joint; empty if no controller commands the joint."""
         return self._mode
 
     def read(self) -> None:
@@ -108,7 +110,10 @@ class SimulatedJoint:
             self._effort.value = float(joint.qfrc_actuator[0] + joint.qfrc_applied[0])
 
     def write(self, period_s: float) -> None:
-        """Apply the commands; a command that is not finite has no effect."""
+        """Apply the command of the current mode, except one that a PID controller follows.
+
+        A command that is NaN has no effect. Without a command mode, the motor is released unless the joint is held.
+        """
         command = self._commands.get(self._mode)
         if command is None:
             if self._motor is not None and not self._holds:
@@ -134,7 +139,7 @@ class SimulatedJoint:
         if pid is None:
             return
         command = self._commands[self._mode].value
-        if command == command:  # the joint keeps its position until the command is a number
+        if command == command:  # Not NaN; before the first command, the target of `set_mode` applies.
             self._target = command
         if self._motor is not None:
             self._motor.release()

@@ -1,9 +1,9 @@
 """PID controllers in the simulator's hardware, as in gazebo_ros2_control.
 
-There are two ways to declare them. Either the command interface is called ``position_pid`` or ``velocity_pid`` in the
-description, and the gains ``pos_kp``, ``vel_ki``, ... are parameters of its joint. Or the interface has its usual name,
-and the gains are parameters of the plugin's node, ``pid_gains.position.JOINT.kp``. Controllers find the interface as
-``JOINT/position`` or ``JOINT/velocity``.
+There are two ways to declare a PID controller. Either the command interface is called ``position_pid`` or
+``velocity_pid`` in the description, and the gains ``pos_kp``, ``vel_ki``, ... are parameters of its joint. Or the
+interface has its usual name, and the gains are parameters of the plugin's node, ``pid_gains.position.JOINT.kp``.
+Controllers find the interface as ``JOINT/position`` or ``JOINT/velocity``.
 
 Source: gazebo_ros2_control's GazeboSystem (names). Without ``min_integral_error`` the lower bound is the negated upper
 bound, while GazeboSystem keeps the integral from becoming negative.
@@ -30,7 +30,7 @@ _TRUE = ("true", "True", True)
 def pids_of(
     description: HardwareDescription, values: Mapping[str, Any], logger: Logger
 ) -> tuple[HardwareDescription, dict[tuple[str, str], PidGains]]:
-    """Return hardware with its command interfaces renamed for controllers, and its PID gains.
+    """Return a description with the interface names that controllers use, and the PID gains.
 
     Args:
         description: the description in the URDF.
@@ -60,7 +60,7 @@ def pids_of(
 def _given(
     joint: ComponentDescription, kind: str, values: Mapping[str, Any], *, is_pid: bool
 ) -> Mapping[str, Any] | None:
-    """Return the gains of a PID controller, by names without prefix; None if there are none."""
+    """Return the gains of a PID controller, by name without prefix; None if there is no controller."""
     start = f"pid_gains.{kind}.{joint.name}."
     found = {name.removeprefix(start): each for name, each in values.items() if name.startswith(start)}
     if found or not is_pid:

@@ -34,7 +34,7 @@ _DEFAULT_RATE = 100
 
 @dataclass(frozen=True, kw_only=True)
 class Parameters:
-    """Parameters of the plugins."""
+    """Parameters of the ros2_control plugins."""
 
     parameters: tuple[str, ...] = ()
     controller_manager_name: str = "controller_manager"
@@ -43,7 +43,7 @@ class Parameters:
 
 
 class SimulatedControl(SimulatedPlugin[Parameters]):
-    """Runs the controllers of a robot in the world."""
+    """The substitute for the ros2_control plugins, which runs the controllers of a robot in the world."""
 
     PARAMETERS = Parameters
     IGNORED = (
@@ -56,7 +56,7 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
     )
 
     def start(self) -> None:
-        """Create the controller manager, and wait for the description."""
+        """Create the controller manager, and subscribe to the robot's description."""
         namespace = self.node.name.rpartition("/")[0] or "/"
         rules = ParameterRules()
         for path in self.parameters.parameters:
@@ -96,7 +96,7 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
             self._manager_node.subscribe("std_msgs/msg/String", topic, self._on_description, DESCRIPTION_QOS)
 
     def reset(self) -> None:
-        """Reset the hardware; active controllers stay active."""
+        """Restore the initial state of the hardware; active controllers remain active."""
         self._last = self.simulation.time
         for system in self._systems:
             system.begin()
@@ -104,14 +104,14 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
             loaded.next_ns = 0
 
     def stop(self) -> None:
-        """Close the controllers and the manager; they are created again with a changed model."""
+        """Close the controller manager, and store its state for the successor in a changed model."""
         if hasattr(self, "_manager"):
             self.left[self._manager_node.name] = self._manager.saved_state()
             self._manager.close()
             self._manager_node.close()
 
     def random_of(self, name: str) -> Any:
-        """Return a random number generator for a sensor, which depends on the seed."""
+        """Return the random number generator of a sensor, which depends on the seed."""
         return self._environment.random(name)
 
     def _on_description(self, message: Any) -> None:

@@ -24,7 +24,7 @@ class SimulatedSensor:
     """A simulated sensor of the hardware.
 
     Args:
-        measure: returns the measured values, by the names of interfaces.
+        measure: returns the measured values, by interface name.
         states: the state interfaces of the sensor.
     """
 
@@ -33,14 +33,14 @@ class SimulatedSensor:
         self._states = states
 
     def read(self) -> None:
-        """Update the values of the state interfaces."""
+        """Measure, and update the state interfaces; interfaces without a measured value keep theirs."""
         measured = self._measure()
         for state in self._states:
             state.value = measured.get(state.kind, state.value)
 
 
 def sensors_of(place: PluginPlace) -> dict[str, PlacedSensor]:
-    """Return the sensors of a model that hardware can read, by their names."""
+    """Return the IMUs and force-torque sensors of a model, by name."""
     assert place.model is not None
     places: Iterator[PluginPlace] = model_plugins(place.world, place.model, place.path)
     return {
@@ -53,7 +53,7 @@ def sensors_of(place: PluginPlace) -> dict[str, PlacedSensor]:
 def simulated_sensor(
     simulation: Simulation, placed: PlacedSensor, states: Sequence[StateInterface], generator: np.random.Generator
 ) -> SimulatedSensor:
-    """Return a sensor with the interfaces for which its measurement has values."""
+    """Return the IMU or force-torque sensor that measures values for state interfaces."""
     if placed.sensor.type == "imu":
         return SimulatedSensor(_imu(simulation, placed, generator), states)
     return SimulatedSensor(_forces(simulation, placed, generator), states)

@@ -1,1 +1,4 @@
-"""Sensors in the graph: plugins of Gazebo classic and ROS 1, and sensors of gz, which do not need plugins."""
+"""Sensors in the graph, for Gazebo classic, ROS 1 and gz.
+
+Gazebo classic and ROS 1 declare them as plugins, and gz as sensors without plugins.
+"""

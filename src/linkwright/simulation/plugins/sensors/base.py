@@ -1,4 +1,4 @@
-"""Base classes of sensors, which handle mount, rate, frames and topics."""
+"""Base classes of sensors, which handle mounts, rates, frames and topics."""
 
 from __future__ import annotations
 
@@ -28,50 +28,50 @@ class FrameName:
 
 
 class SensorPlugin(SimulatedPlugin[P], ABC, Generic[P]):
-    """A sensor that measures when a measurement is due and one of its topics has a subscription."""
+    """A sensor that measures at its rate while one of its topics has a subscription."""
 
     def start(self) -> None:
-        """Create the measuring sensor and the topics."""
+        """Create the sensor model and the topics, and schedule measurements."""
         self.make_sensor()
         self.make_topics()
         self.every(self.rate, self._measure)
 
     def reset(self) -> None:
-        """Restart the sensor with the same random numbers."""
+        """Create the sensor model again, which restarts its random numbers."""
         self.make_sensor()
 
     @abstractmethod
     def make_sensor(self) -> None:
-        """Create the object that measures."""
+        """Create the sensor model that measures."""
 
     @abstractmethod
     def make_topics(self) -> None:
-        """Create the topics."""
+        """Create the topics to which measurements are published."""
 
     @abstractmethod
     def is_wanted(self) -> bool:
         """Return whether a topic of the sensor has a subscription."""
 
     def is_needed(self) -> bool:
-        """Return whether the sensor has to measure now."""
+        """Return whether a measurement has a recipient; by default, whether a topic has a subscription."""
         return self.is_wanted()
 
     @abstractmethod
     def measure(self) -> None:
-        """Measure and publish."""
+        """Measure, and publish the result."""
 
     @property
     def rate(self) -> float:
-        """The number of measurements per simulated second."""
+        """The number of measurements per simulated second; 0 for one after each step."""
         return self.sensor.sensor.update_rate
 
     @property
     def mount(self) -> Mount:
-        """The place to which the sensor is fixed."""
+        """The link and the pose at which the sensor is fixed."""
         return Mount(self.simulation, self.sensor.link, self.sensor.pose)
 
     def classic_frame(self) -> str:
-        """Return the message frame for Gazebo classic: from the plugin's parameters, or else the link."""
+        """Return the message frame for Gazebo classic: the parameter ``frame_name``, or else the link."""
         frame: str = getattr(self.parameters, "frame_name", "")
         return frame.lstrip("/") or self.sensor.link.rpartition(SEPARATOR)[2]
 
@@ -80,7 +80,7 @@ class SensorPlugin(SimulatedPlugin[P], ABC, Generic[P]):
         return self.sensor.sensor.frame_id or self.sensor.name.replace(SEPARATOR, "/")
 
     def gz_topic(self, leaf: str) -> str:
-        """Return the topic that gz gives a sensor whose element does not name one."""
+        """Return the default topic that gz gives a sensor; `leaf` is the last part of the name."""
         model, *inside = self.sensor.name.split(SEPARATOR)
         holder = "joint" if self.sensor.joint else "link"
         place = f"/world/{self.place.world.name}/model/{model}/{holder}/{'/'.join(inside[:-1])}"
@@ -92,7 +92,7 @@ class SensorPlugin(SimulatedPlugin[P], ABC, Generic[P]):
         Args:
             kind: the message type.
             leaf: the last part of the default name.
-            usual: the name that the topic has on robots.
+            usual: the usual name of the topic on robots; ``/`` and `leaf` if empty.
         """
         topic = self.sensor.sensor.topic
         return self.node.publisher(kind, topic or self.gz_topic(leaf), usual="" if topic else usual or f"/{leaf}")
@@ -110,7 +110,7 @@ class OneTopic(SensorPlugin[P], Generic[P]):
     """A sensor with one topic.
 
     Attributes:
-        output: the topic, which `make_topics` creates.
+        output: the publisher of the topic, which `make_topics` creates.
     """
 
     output: Output
@@ -121,6 +121,6 @@ class OneTopic(SensorPlugin[P], Generic[P]):
 
 
 def vector(values: Array) -> Vector3:
-    """Return three numbers as a message."""
+    """Return three numbers as a ``geometry_msgs/msg/Vector3``."""
     x, y, z = values.tolist()
     return Vector3(x, y, z)

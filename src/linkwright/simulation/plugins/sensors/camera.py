@@ -1,7 +1,7 @@
 """Cameras: ``gazebo_ros_camera`` and the cameras of ROS 1; cameras and depth cameras of gz.
 
-Source: gazebo_ros_pkgs for ROS 2 (topics, parameters, encodings, the cloud), for ROS 1 (names), gz-sensors (topics).
-Red and blue in a cloud are placed where PCL and RViz read them; ``gazebo_ros_camera`` swaps them.
+Source: gazebo_ros_pkgs for ROS 2 (topics, parameters, encodings, point clouds), for ROS 1 (names), gz-sensors (topics).
+Red and blue in a point cloud have the byte order that PCL and RViz expect; ``gazebo_ros_camera`` swaps them.
 """
 
 from __future__ import annotations
@@ -47,10 +47,10 @@ class MountedCamera:
 
     Attributes:
         description: the parsed camera.
-        optics: its projection.
-        pose: its pose in the frame of the link.
-        noise: the noise on its colours.
-        encoding: the encoding of its images.
+        optics: the projection of the camera.
+        pose: the pose of the camera in the frame of the link.
+        noise: the noise on the colours of the images.
+        encoding: the encoding of the images.
     """
 
     description: Camera
@@ -64,21 +64,21 @@ class CameraPlugin(SensorPlugin[P], Generic[P]):
     """A sensor that renders images."""
 
     def make_sensor(self) -> None:
-        """Create the cameras."""
+        """Create the cameras of the sensor, with a new random number generator for their noise."""
         generator = self.random
         self.cameras = [self._mounted(camera, generator) for camera in self.sensor.sensor.cameras or (Camera(),)]
 
     def start(self) -> None:
-        """Create the cameras and the topics."""
+        """Acquire the shared renderer, and create the cameras and the topics."""
         self._shared = shared_renderer(self.simulation)
         super().start()
 
     def stop(self) -> None:
-        """Release the renderer."""
+        """Release the shared renderer."""
         self._shared.release()
 
     def see(self, camera: MountedCamera, wanted: Channels) -> RenderedImage:
-        """Render an image of one of the sensor's cameras, with noise on the colours."""
+        """Render the requested channels of one of the sensor's cameras, with noise on the colours."""
         pose = compose(self.simulation.link_pose(self.sensor.link), camera.pose)
         rendered = self._shared.render(camera.optics, pose, wanted, self._log_renderer)
         if rendered.colour is None:
@@ -86,7 +86,7 @@ class CameraPlugin(SensorPlugin[P], Generic[P]):
         return RenderedImage(camera.noise.apply(rendered.colour), rendered.depth, rendered.geoms)
 
     def publish_image(self, output: Output, camera: MountedCamera, rendered: RenderedImage, frame: str) -> None:
-        """Publish the colours of a rendered image."""
+        """Publish the colours of a rendered image in the camera's encoding."""
         message = self.message(IMAGE, frame)
         fill_image(message, rendered.colour, camera.encoding)  # type: ignore[arg-type]  # it was asked for
         output.publish(message)
@@ -126,7 +126,10 @@ class CameraParameters(FrameName):
 
 
 class ClassicCamera(CameraPlugin[CameraParameters]):
-    """``libgazebo_ros_camera.so``, for sensors of type camera, depth and multicamera, and the cameras of ROS 1."""
+    """The substitute for ``libgazebo_ros_camera.so`` and the cameras of ROS 1.
+
+    It serves sensors of the types camera, depth and multicamera.
+    """
 
     PARAMETERS = CameraParameters
     IGNORED = (
@@ -155,7 +158,7 @@ class ClassicCamera(CameraPlugin[CameraParameters]):
     )
 
     def make_topics(self) -> None:
-        """Create the topics of each camera."""
+        """Create the topics of each camera, and subscribe to the trigger if the parameters enable it."""
         parameters, sensor = self.parameters, self.sensor.sensor
         name = parameters.camera_name or sensor.name
         self._frame = self.classic_frame()
@@ -183,7 +186,7 @@ class ClassicCamera(CameraPlugin[CameraParameters]):
 
     @property
     def rate(self) -> float:
-        """The rate of the sensor, or of the plugin."""
+        """The images per simulated second, from the sensor, or else from the plugin."""
         return self.sensor.sensor.update_rate or self.parameters.update_rate
 
     def is_wanted(self) -> bool:
@@ -191,7 +194,7 @@ class ClassicCamera(CameraPlugin[CameraParameters]):
         return self._asked and any(image.is_wanted for image in (*self._images, *self._infos, *self._depths))
 
     def measure(self) -> None:
-        """Render the images whose topics have subscriptions."""
+        """Render and publish the images whose topics have subscriptions."""
         self._asked = not self.parameters.triggered
         for camera, image, info in zip(self.cameras, self._images, self._infos, strict=True):
             depth, depth_info, cloud = self._depths or (None, None, None)
@@ -240,15 +243,18 @@ def points_of(optics: Optics, depth: Any) -> Any:
     The axes are x to the right, y down and z forwards.
     """
     rays = optics.rays.astype(np.float32).reshape(optics.height, optics.width, 3)
-    with np.errstate(invalid="ignore"):  # for 0 times infinity
+    with np.errstate(invalid="ignore"):  # A ray without a hit has an infinite depth, and 0 times infinity is NaN.
         return rays * depth[:, :, None]
 
 
 class GzCamera(CameraPlugin[NoParameters]):
-    """``camera``, ``depth_camera`` and ``rgbd_camera`` of gz; the points of the latter two have x pointing forwards."""
+    """The cameras of gz of the types ``camera``, ``depth_camera`` and ``rgbd_camera``.
+
+    The points of depth and RGB-D cameras have the x axis pointing forwards.
+    """
 
     def make_topics(self) -> None:
-        """Create the topics."""
+        """Create the topics for images, depth images, points and camera info that the type requires."""
         kind = self.sensor.sensor.type
         self._frame = self.gz_frame()
         camera = self.cameras[0].description
@@ -290,7 +296,7 @@ class GzCamera(CameraPlugin[NoParameters]):
         return any(output.is_wanted for output in self._outputs())
 
     def measure(self) -> None:
-        """Render an image with the channels whose topics have subscriptions."""
+        """Render and publish the channels whose topics have subscriptions."""
         (camera, *_) = self.cameras
         wanted = Channels(0)
         if any(output is not None and output.is_wanted for output in (self._image, self._cloud)):

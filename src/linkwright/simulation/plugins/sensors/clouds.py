@@ -1,4 +1,4 @@
-"""Fill ``sensor_msgs/msg/PointCloud2`` with the points of lidars and depth cameras."""
+"""Fills ``sensor_msgs/msg/PointCloud2`` messages with the points of lidars and depth cameras."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def fill_lidar_cloud(
 def fill_camera_cloud(message: Any, points: Points, colour: Points, *, swapped: bool = False) -> None:
     """Fill a PointCloud2 with the points of an image, shape (height, width, 3), and their colours.
 
-    With `swapped`, red and blue change places as in Gazebo classic.
+    With `swapped`, red and blue are exchanged as in Gazebo classic.
 
     Source of the layout: ``gazebo_ros_camera``, 32 bytes per point with the colour at byte 16.
     """
@@ -77,14 +77,14 @@ def fill_camera_cloud(message: Any, points: Points, colour: Points, *, swapped: 
     rows = np.zeros((height * width, 8), np.float32)
     rows[:, :3] = points.reshape(-1, 3)
     bytes_of = rows.view(np.uint8).reshape(height * width, 32)
-    # PCL's byte order: blue is the lowest byte.
+    # PCL stores blue in the lowest byte.
     bytes_of[:, 16:19] = colour.reshape(-1, 3)[:, :: 1 if swapped else -1]
     _fill(message, rows.view(_COLOURED).reshape(-1), height)
     message.is_dense = False
 
 
 def _fill(message: Any, rows: Points, height: int) -> None:
-    """Fill a PointCloud2 of `height` rows with points, shape (n,), that have a structured layout."""
+    """Fill a PointCloud2 with points of a structured type, shape (n,), arranged in `height` rows."""
     message.fields = list(_fields(rows.dtype))
     message.height, message.width = height, len(rows) // max(height, 1)
     message.point_step = rows.dtype.itemsize

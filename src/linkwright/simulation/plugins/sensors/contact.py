@@ -30,22 +30,28 @@ class BumperParameters:
 
 
 class _Contacts(OneTopic[P], Generic[P]):
-    """A sensor for the contacts of one collision."""
+    """A sensor that measures the contacts of one collision, or of all collisions of its link."""
 
     def make_sensor(self) -> None:
-        """Create the sensor for the collision that its element names."""
+        """Create the sensor model for the collision that the sensor's element names.
+
+        If the element names no collision, the sensor measures all contacts of the link.
+        """
         contact = self.sensor.sensor.contact
         named = [] if contact is None or contact.collision == "__default__" else [contact.collision]
         self.contacts = ContactSensor(self.mount, named)
 
 
 class ClassicBumper(_Contacts[BumperParameters]):
-    """``libgazebo_ros_bumper.so``: positions and forces are in the world, whatever frame the message names."""
+    """The substitute for ``libgazebo_ros_bumper.so``.
+
+    Positions and forces are expressed in the world, whatever frame the message names.
+    """
 
     PARAMETERS = BumperParameters
 
     def make_topics(self) -> None:
-        """Create the topic."""
+        """Create the topic for ``gazebo_msgs/msg/ContactsState``."""
         self.output = self.node.publisher(_TYPE, self.parameters.topic_name, SENSOR_QOS)
 
     def measure(self) -> None:
@@ -56,7 +62,7 @@ class ClassicBumper(_Contacts[BumperParameters]):
 
 
 class GzContact(_Contacts[NoParameters]):
-    """``contact`` of gz, which does not publish while there is no contact."""
+    """The sensor ``contact`` of gz, which publishes nothing while there is no contact."""
 
     def make_topics(self) -> None:
         """Create the topic, with the name from ``<contact>`` or the default name of gz."""
@@ -75,7 +81,10 @@ class GzContact(_Contacts[NoParameters]):
 
 
 def _contact(contact: Contact) -> Any:
-    """Return a message of a contact; positions, normals and forces are in world axes."""
+    """Return the ``ros_gz_interfaces/msg/Contact`` of a contact.
+
+    Positions, normals and forces are in world axes.
+    """
     message = get_message("ros_gz_interfaces/msg/Contact")()
     for entity, name in ((message.collision1, contact.collision1), (message.collision2, contact.collision2)):
         entity.name, entity.type = name, entity.COLLISION
@@ -102,5 +111,5 @@ def _state(contact: Contact) -> Any:
 
 
 def wrench(force: Array, torque: Array) -> Any:
-    """Return a force in N and a torque in N m as a message."""
+    """Return a force in N and a torque in N m as a ``geometry_msgs/msg/Wrench``."""
     return get_message("geometry_msgs/msg/Wrench")(force=vector(force), torque=vector(torque))

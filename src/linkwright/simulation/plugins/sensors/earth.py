@@ -1,4 +1,6 @@
-"""Sensors of geographic position, magnetic field, altitude and pressure: ``gazebo_ros_gps_sensor`` and those of gz.
+"""Sensors of geographic position, magnetic field, altitude and air pressure.
+
+They replace ``gazebo_ros_gps_sensor`` and the sensors of gz.
 
 Source: gazebo_ros_pkgs for ROS 2 (topics, covariances), gz-sensors (topics), ros_gz (messages).
 """
@@ -20,15 +22,15 @@ _DIAGONAL_KNOWN = 2
 
 
 class _Receiver(SensorPlugin[P], Generic[P]):
-    """A satellite navigation receiver and its messages."""
+    """A satellite navigation receiver that publishes ``sensor_msgs/msg/NavSatFix``."""
 
     def make_sensor(self) -> None:
-        """Create the receiver."""
+        """Create the receiver for the geographic position of the world's origin."""
         place = self.place.world.spherical_coordinates
         self._receiver = NavsatSensor(self.mount, self.sensor.sensor.navsat, place, self.random)
 
     def receive(self, frame: str) -> tuple[Fix, Any]:
-        """Return a measurement and its message."""
+        """Measure, and return the fix and its NavSatFix message."""
         fix = self._receiver.measure()
         message = self.message(_FIX, frame)
         message.latitude, message.longitude, message.altitude = fix.latitude, fix.longitude, fix.altitude
@@ -39,12 +41,15 @@ class _Receiver(SensorPlugin[P], Generic[P]):
 
 
 class ClassicGps(_Receiver[FrameName]):
-    """``libgazebo_ros_gps_sensor.so``: the position, and the velocity towards east, north and up."""
+    """The substitute for ``libgazebo_ros_gps_sensor.so``.
+
+    It publishes the position, and the velocity towards east, north and up.
+    """
 
     PARAMETERS = FrameName
 
     def make_topics(self) -> None:
-        """Create the topics."""
+        """Create the topics for the position and the velocity."""
         self._fixes = self.node.publisher(_FIX, "~/out", SENSOR_QOS)
         self._velocities = self.node.publisher("geometry_msgs/msg/Vector3Stamped", "~/vel", SENSOR_QOS)
 
@@ -53,7 +58,7 @@ class ClassicGps(_Receiver[FrameName]):
         return self._fixes.is_wanted or self._velocities.is_wanted
 
     def measure(self) -> None:
-        """Measure and publish."""
+        """Measure, and publish the position and the velocity."""
         fix, message = self.receive(self.classic_frame())
         self._fixes.publish(message)
         velocity = self.message("geometry_msgs/msg/Vector3Stamped", self.classic_frame())
@@ -62,31 +67,31 @@ class ClassicGps(_Receiver[FrameName]):
 
 
 class GzNavsat(_Receiver[NoParameters], OneTopic[NoParameters]):
-    """``navsat`` and ``gps`` of gz."""
+    """The sensors ``navsat`` and ``gps`` of gz."""
 
     def make_topics(self) -> None:
-        """Create the topic."""
+        """Create the topic for ``sensor_msgs/msg/NavSatFix``."""
         self.output = self.gz_output(_FIX, "navsat")
 
     def measure(self) -> None:
-        """Measure and publish."""
+        """Measure, and publish the position."""
         self.output.publish(self.receive(self.gz_frame())[1])
 
 
 class GzMagnetometer(OneTopic[NoParameters]):
-    """``magnetometer`` of gz, in tesla, as ros_gz_bridge publishes it."""
+    """The sensor ``magnetometer`` of gz, in tesla as ros_gz_bridge publishes it."""
 
     def make_sensor(self) -> None:
-        """Create the magnetometer."""
+        """Create the magnetometer for the magnetic field of the world."""
         noise, field = self.sensor.sensor.magnetometer, self.place.world.magnetic_field
         self._sensor = MagnetometerSensor(self.mount, noise, self.random, field)
 
     def make_topics(self) -> None:
-        """Create the topic."""
+        """Create the topic for ``sensor_msgs/msg/MagneticField``."""
         self.output = self.gz_output(_FIELD, "magnetometer")
 
     def measure(self) -> None:
-        """Measure and publish."""
+        """Measure, and publish the magnetic field."""
         message = self.message(_FIELD, self.gz_frame())
         message.magnetic_field = vector(self._sensor.measure())
         message.magnetic_field_covariance = self._sensor.noise.covariance.copy()
@@ -94,18 +99,18 @@ class GzMagnetometer(OneTopic[NoParameters]):
 
 
 class GzAltimeter(OneTopic[NoParameters]):
-    """``altimeter`` of gz."""
+    """The sensor ``altimeter`` of gz."""
 
     def make_sensor(self) -> None:
         """Create the altimeter."""
         self._sensor = AltimeterSensor(self.mount, self.sensor.sensor.altimeter, self.random)
 
     def make_topics(self) -> None:
-        """Create the topic."""
+        """Create the topic for altimeter messages."""
         self.output = self.gz_output(_HEIGHT, "altimeter")
 
     def measure(self) -> None:
-        """Measure and publish."""
+        """Measure, and publish the height and the vertical velocity."""
         message = self.message(_HEIGHT, self.gz_frame())
         message.vertical_position, message.vertical_velocity = self._sensor.measure()
         message.vertical_reference = self._sensor.reference
@@ -113,18 +118,18 @@ class GzAltimeter(OneTopic[NoParameters]):
 
 
 class GzAirPressure(OneTopic[NoParameters]):
-    """``air_pressure`` of gz."""
+    """The sensor ``air_pressure`` of gz."""
 
     def make_sensor(self) -> None:
         """Create the barometer."""
         self._sensor = Barometer(self.mount, self.sensor.sensor.air_pressure, self.random)
 
     def make_topics(self) -> None:
-        """Create the topic."""
+        """Create the topic for ``sensor_msgs/msg/FluidPressure``."""
         self.output = self.gz_output(_PRESSURE, "air_pressure")
 
     def measure(self) -> None:
-        """Measure and publish."""
+        """Measure, and publish the air pressure."""
         message = self.message(_PRESSURE, self.gz_frame())
         message.fluid_pressure, message.variance = self._sensor.measure(), self._sensor.noise.variance
         self.output.publish(message)

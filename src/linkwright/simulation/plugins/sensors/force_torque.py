@@ -30,46 +30,49 @@ class ForceTorqueParameters(FrameName):
 
 
 class _ForceTorque(OneTopic[P], Generic[P]):
-    """A force-torque sensor and its messages."""
+    """A force-torque sensor that publishes ``geometry_msgs/msg/WrenchStamped``."""
 
     _sensor: ForceTorqueSensor
     _frame: str
 
     def measure(self) -> None:
-        """Measure and publish."""
+        """Measure, and publish the wrench."""
         message = self.message(_TYPE, self._frame)
         message.wrench = wrench(*self._sensor.measure())
         self.output.publish(message)
 
 
 class ClassicForceTorque(_ForceTorque[ForceTorqueParameters]):
-    """``libgazebo_ros_ft_sensor.so``: the wrench that the child link exerts on its parent, in the child's frame."""
+    """The substitute for ``libgazebo_ros_ft_sensor.so``.
+
+    It publishes the wrench that the child link exerts on its parent, in the child's frame.
+    """
 
     PARAMETERS = ForceTorqueParameters
     IGNORED = ("gaussian_noise", "gaussianNoise")
 
     @property
     def rate(self) -> float:
-        """The rate of the plugin."""
+        """The measurements per simulated second, from the plugin's parameters."""
         return self.parameters.update_rate
 
     def make_sensor(self) -> None:
-        """Find the joint, and create the sensor."""
+        """Find the joint that the parameters name, and create its sensor."""
         joint = self.joint(self.parameters.joint_name)
         self._child = self.simulation.scene.joints[joint].child
         self._sensor = ForceTorqueSensor(self.simulation, joint, ForceTorque(), self.random)
 
     def make_topics(self) -> None:
-        """Create the topic."""
+        """Create the topic that the parameters name."""
         self._frame = self.parameters.frame_name.lstrip("/") or self._child.rpartition("::")[2]
         self.output = self.node.publisher(_TYPE, self.parameters.topic_name, SENSOR_QOS)
 
 
 class GzForceTorque(_ForceTorque[NoParameters]):
-    """``force_torque`` of gz, on a joint."""
+    """The sensor ``force_torque`` of gz, in a joint."""
 
     def make_sensor(self) -> None:
-        """Find the joint, and create the sensor."""
+        """Find the joint that contains the sensor, and create the sensor model."""
         joint = self.joint(self.sensor.joint.rpartition("::")[2])
         placed = self.simulation.scene.joints[joint]
         child = self.simulation.link_pose(placed.child)
@@ -77,6 +80,6 @@ class GzForceTorque(_ForceTorque[NoParameters]):
         self._sensor = ForceTorqueSensor(self.simulation, joint, self.sensor.sensor.force_torque, self.random, offset)
 
     def make_topics(self) -> None:
-        """Create the topic."""
+        """Create the topic for wrenches, with the name from the sensor's element or the default name."""
         self._frame = self.gz_frame()
         self.output = self.gz_output(_TYPE, "forcetorque", "/force_torque")

@@ -1,4 +1,4 @@
-"""Images as messages: encodings, noise, and ``CameraInfo``.
+"""Image messages: encodings, noise and ``CameraInfo``.
 
 Source: gazebo_ros_pkgs for ROS 2 (formats, camera_info), REP 118 for depths.
 """
@@ -36,7 +36,7 @@ class PixelNoise:
     """Noise on the colours of images.
 
     Args:
-        noise: the noise on each colour, whose values range from 0 to 1.
+        noise: the noise on each colour value, in the range from 0 to 1.
         generator: the source of random numbers.
     """
 
@@ -57,22 +57,22 @@ class PixelNoise:
             self._more, self._less = (np.maximum(array, 0).astype(np.uint8) for array in (drawn, -drawn))
         start = int(self._generator.integers(_PLACES))
         more, less = (array[start : start + colour.size].reshape(colour.shape) for array in (self._more, self._less))
-        noisy: Pixels = np.maximum(colour, less)  # clipping bytes takes a sixth of the time of clipping larger integers
+        noisy: Pixels = np.maximum(colour, less)  # clipping bytes takes a sixth of the time of clipping integers
         noisy -= less
-        np.invert(noisy, out=noisy)  # the same for the distance to white
+        np.invert(noisy, out=noisy)  # clip the sum at white by inverting the image
         np.maximum(noisy, more, out=noisy)
         noisy -= more
         return np.invert(noisy, out=noisy)
 
 
 def fill_image(message: Any, colour: Pixels, encoding: str) -> None:
-    """Fill an Image from RGB colours, shape (height, width, 3), in one of the `ENCODINGS`."""
+    """Fill an Image from RGB colours, shape (height, width, 3), in an encoding of `ENCODINGS`."""
     pixels = colour
     if encoding.startswith("mono"):
         pixels = np.round(colour @ _GREY).astype(np.uint8)
     elif encoding.startswith("bgr"):
         pixels = np.empty_like(colour)
-        for channel in range(3):  # takes an eighth of the time of reversing all three channels together
+        for channel in range(3):  # an eighth of the time of reversing all channels at once
             pixels[:, :, channel] = colour[:, :, 2 - channel]
     elif encoding.startswith("bayer"):
         pixels = _mosaic(colour, encoding.removeprefix("bayer_")[:4])
@@ -84,13 +84,13 @@ def fill_image(message: Any, colour: Pixels, encoding: str) -> None:
 def fill_depth(message: Any, depth: Pixels, nearest: float, farthest: float) -> None:
     """Fill an Image with depths in m, shape (height, width).
 
-    Depths below the minimum become -inf, and depths above the maximum become inf.
+    Depths up to the minimum become -inf, and depths from the maximum become inf.
     """
     _fill(message, clip_depth(depth, nearest, farthest), "32FC1")
 
 
 def clip_depth(depth: Pixels, nearest: float, farthest: float) -> Pixels:
-    """Return depths with -inf below the minimum and inf above the maximum."""
+    """Return depths with -inf up to the minimum and inf from the maximum."""
     result: Pixels = np.array(depth, dtype=np.float32)
     np.copyto(result, np.inf, where=depth >= farthest)
     np.copyto(result, -np.inf, where=depth <= nearest)
@@ -107,7 +107,7 @@ def _fill(message: Any, pixels: Pixels, encoding: str) -> None:
 
 
 def _mosaic(colour: Pixels, order: str) -> Pixels:
-    """Return a Bayer mosaic, which has one colour per pixel in squares of two by two pixels."""
+    """Return a Bayer mosaic: one colour per pixel, in the given order within two by two pixels."""
     mosaic = np.empty(colour.shape[:2], np.uint8)
     for place, letter in enumerate(order):
         row, column = divmod(place, 2)
@@ -124,7 +124,7 @@ def fill_camera_info(
     focal: float = 0.0,
     baseline: float = 0.0,
 ) -> None:
-    """Fill a CameraInfo.
+    """Fill a CameraInfo with the projection and the distortion of a camera.
 
     Args:
         message: the message.

@@ -29,16 +29,16 @@ def _message_class() -> Any:
 
 
 class _ImuPlugin(OneTopic[P], Generic[P]):
-    """An IMU and its messages."""
+    """An IMU that publishes ``sensor_msgs/msg/Imu``."""
 
     frame: str
 
     def make_sensor(self) -> None:
-        """Create the IMU."""
+        """Create the IMU that the sensor's element describes."""
         self.imu = ImuSensor(self.mount, self.sensor.sensor.imu, generator=self.random)
 
     def measure(self) -> None:
-        """Measure and publish."""
+        """Measure, and publish orientation, angular velocity and linear acceleration."""
         measured = self.imu.measure()
         message = _message_class()(
             header=Header(self.stamp(), self.frame),
@@ -60,19 +60,19 @@ class ImuParameters(FrameName):
 
 
 class ClassicImu(_ImuPlugin[ImuParameters]):
-    """``libgazebo_ros_imu_sensor.so``."""
+    """The substitute for ``libgazebo_ros_imu_sensor.so``."""
 
     PARAMETERS = ImuParameters
     IGNORED = ("body_name", "bodyName", "updateRateHZ", "update_rate", "gaussianNoise", "xyzOffset", "rpyOffset")
 
     def make_sensor(self) -> None:
-        """Create the IMU, whose orientation may be relative to the initial one."""
+        """Create the IMU, which measures relative to the initial orientation if the parameters request it."""
         initial = self.parameters.initial_orientation_as_reference
         imu = self.sensor.sensor.imu
         self.imu = ImuSensor(self.mount, imu, generator=self.random, initial_reference=initial)
 
     def make_topics(self) -> None:
-        """Create the topic."""
+        """Create the topic that the parameters name, or ``~/out``."""
         self.frame = self.classic_frame()
         self.output = self.node.publisher(_TYPE, self.parameters.topic_name or "~/out", SENSOR_QOS)
 
@@ -90,40 +90,40 @@ class OldImuParameters(FrameName):
 
 
 class OldImu(_ImuPlugin[OldImuParameters]):
-    """``libgazebo_ros_imu.so`` of ROS 1, which is a plugin of a model and names its link."""
+    """The substitute for ``libgazebo_ros_imu.so`` of ROS 1, a plugin of a model that names its link."""
 
     PARAMETERS = OldImuParameters
     IGNORED = ("serviceName",)
 
     @property
     def rate(self) -> float:
-        """The rate of the plugin."""
+        """The measurements per simulated second, from the plugin's parameters."""
         return self.parameters.update_rate
 
     @property
     def mount(self) -> Mount:
-        """The mount on the link that the plugin names."""
+        """The mount on the link that the parameters name, with the configured offset."""
         parameters = self.parameters
         turned = (0.0, 0.0, 0.0, *quaternion_from_rpy(parameters.rpy_offset))
         offset = compose((*parameters.xyz_offset, 0.0, 0.0, 0.0, 1.0), turned)
         return Mount(self.simulation, self.link(parameters.body_name), offset)
 
     def make_sensor(self) -> None:
-        """Create the IMU."""
+        """Create an IMU with the same noise on all measured values."""
         each = Noise("gaussian", stddev=self.parameters.gaussian_noise) if self.parameters.gaussian_noise else Noise()
         noise = NoiseXyz(each, each, each)
         self.imu = ImuSensor(self.mount, Imu(noise, noise), generator=self.random)
 
     def make_topics(self) -> None:
-        """Create the topic."""
+        """Create the topic that the parameters name."""
         self.frame = self.parameters.frame_name.lstrip("/") or self.parameters.body_name
         self.output = self.node.publisher(_TYPE, self.parameters.topic_name, SENSOR_QOS)
 
 
 class GzImu(_ImuPlugin[NoParameters]):
-    """``imu`` of gz."""
+    """The sensor ``imu`` of gz."""
 
     def make_topics(self) -> None:
-        """Create the topic."""
+        """Create the topic for measurements, with the name from the sensor's element or the default name."""
         self.frame = self.gz_frame()
         self.output = self.gz_output(_TYPE, "imu")

@@ -1,4 +1,4 @@
-"""Cameras that publish ground truth of their view: ``segmentation_camera`` and ``boundingbox_camera`` of gz.
+"""Cameras that publish ground truth about their images: ``segmentation_camera``, ``boundingbox_camera``.
 
 ``gz-sim-label-system`` with a ``<label>`` in visuals or models labels objects; everything else is background, 0.
 
@@ -48,7 +48,10 @@ class Labels:
         return labels
 
     def instances(self, geoms: Pixels) -> Pixels:
-        """Return the number of the labelled model that contains each geom, starting at 1; 0 without a label."""
+        """Return the instance number of the labelled model of each geom, in an array of the same shape.
+
+        Numbers begin with 1; geoms without a label have 0.
+        """
         instances: Pixels = self._instances.array()[geoms].astype(np.uint16)
         return instances
 
@@ -66,7 +69,7 @@ class Labels:
         return [float(numbers[model]) if label else 0.0 for model, label in zip(models, labels, strict=True)]
 
     def _known(self) -> Iterator[tuple[str, int]]:
-        """Yield the labels with the names of models and visuals."""
+        """Yield the names of labelled models and visuals, with their labels."""
         for model in self._simulation.scene.models.values():
             yield from _labels_in(model.model, model.name)
 
@@ -90,7 +93,7 @@ def _written(plugins: tuple[Plugin, ...]) -> Iterator[int]:
 
 
 def _longest(known: dict[str, int], part: str) -> int:
-    """Return the label of a visual: its own, or that of the closest enclosing model."""
+    """Return the label of a visual or of its closest enclosing model; 0 if neither has a label."""
     name = part
     while name:
         if name in known:
@@ -100,10 +103,10 @@ def _longest(known: dict[str, int], part: str) -> int:
 
 
 class _LabellingCamera(CameraPlugin[NoParameters]):
-    """A camera that sees the labels of visuals."""
+    """A camera that renders the labels of visuals."""
 
     def make_sensor(self) -> None:
-        """Create the camera."""
+        """Create the camera and the table of labels."""
         super().make_sensor()
         self.labels = Labels(self.simulation)
         self.frame = self.cameras[0].description.optical_frame_id or self.gz_frame()
@@ -115,7 +118,7 @@ class _LabellingCamera(CameraPlugin[NoParameters]):
         output.publish(message)
 
     def publish_info(self, output: Output, camera: MountedCamera) -> None:
-        """Publish the ``CameraInfo``."""
+        """Publish the ``CameraInfo`` if its topic has a subscription."""
         if output.is_wanted:
             message = self.message(INFO, self.frame)
             fill_camera_info(message, camera.optics, camera.description.distortion)
@@ -123,10 +126,10 @@ class _LabellingCamera(CameraPlugin[NoParameters]):
 
 
 class GzSegmentation(_LabellingCamera):
-    """``segmentation_camera``: publishes a label map and a coloured map."""
+    """The sensor ``segmentation_camera`` of gz, which publishes a label map and a coloured map."""
 
     def make_topics(self) -> None:
-        """Create the topics."""
+        """Create the topics for the label map, the coloured map and the camera info."""
         base = self.sensor.sensor.topic or self.gz_topic("segmentation")
         usual = "" if self.sensor.sensor.topic else "/segmentation"
         names = {leaf: f"{usual}/{leaf}" if usual else "" for leaf in ("labels_map", "colored_map", "camera_info")}
@@ -141,7 +144,7 @@ class GzSegmentation(_LabellingCamera):
         return any(output.is_wanted for output in (self._maps, self._coloured, self._info))
 
     def measure(self) -> None:
-        """Compute and publish the maps."""
+        """Render, and publish the maps and the camera info."""
         (camera, *_) = self.cameras
         self.publish_info(self._info, camera)
         if not (self._maps.is_wanted or self._coloured.is_wanted):
@@ -161,13 +164,14 @@ class GzSegmentation(_LabellingCamera):
 
 
 class GzBoxes(_LabellingCamera):
-    """``boundingbox_camera``: publishes boxes around the visible part of each labelled model, and an image with them.
+    """The sensor ``boundingbox_camera`` of gz.
 
-    Boxes of the types ``full_2d`` and ``3d`` cover only the visible part, too.
+    It publishes boxes around the visible part of each labelled model, and an image with these boxes. Unlike in gz,
+    boxes of the types ``full_2d`` and ``3d`` also cover only the visible part.
     """
 
     def make_topics(self) -> None:
-        """Create the topics."""
+        """Create the topics for the boxes, the image with boxes and the camera info."""
         topic = self.sensor.sensor.topic or self.gz_topic("boundingbox")
         usual = "" if self.sensor.sensor.topic else "/boundingbox"
         self._boxes = self.node.publisher(_DETECTIONS, topic, usual=usual)
@@ -180,7 +184,7 @@ class GzBoxes(_LabellingCamera):
         return any(output.is_wanted for output in (self._boxes, self._images, self._info))
 
     def measure(self) -> None:
-        """Find the boxes, and publish them."""
+        """Render, and publish the boxes, the image with boxes and the camera info."""
         (camera, *_) = self.cameras
         self.publish_info(self._info, camera)
         if not (self._boxes.is_wanted or self._images.is_wanted):
@@ -200,7 +204,7 @@ class GzBoxes(_LabellingCamera):
             self.publish_colours(self._images, colour)
 
     def _outlines(self, geoms: Any) -> Iterator[tuple[int, int, int, int, int]]:
-        """Yield the label, left, top, right and bottom of each box; the limits are part of the box."""
+        """Yield the label, left, top, right and bottom of each box, in pixels; all four are inclusive."""
         labels, instances = self.labels.labels(geoms), self.labels.instances(geoms)
         for instance in np.unique(instances[instances > 0]):
             for label in np.unique(labels[(instances == instance) & (labels > 0)]):

@@ -32,16 +32,16 @@ _RADIATIONS = {"ultrasound": 0, "infrared": 1}
 
 
 class _LidarPlugin(SensorPlugin[P], Generic[P]):
-    """The base class of lidars, which also publish their rays while a page draws them."""
+    """The base class of lidars, which also publish their rays while a page displays them."""
 
     def start(self) -> None:
-        """Create the lidar and the topics."""
+        """Create the lidar and the topics for measurements and rays."""
         visualize = self.sensor.sensor.visualize
         self._rays = self.node.publisher(_SCAN, RAYS if visualize else OTHER_RAYS, SENSOR_DATA_QOS)
         super().start()
 
     def is_needed(self) -> bool:
-        """Return whether its measurements or its rays have a subscriber."""
+        """Return whether the topics for measurements or rays have a subscription."""
         return self.is_wanted() or self._rays.is_wanted
 
     def measure(self) -> None:
@@ -54,16 +54,19 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
 
     @abstractmethod
     def publish(self, scan: Scan) -> None:
-        """Publish a scan."""
+        """Publish the measurements of a scan."""
 
     def _rays_message(self, scan: Scan) -> Any:
-        """Return a message with all rows of a scan, lowest first; its frame is the sensor's name."""
+        """Return a LaserScan with all rows of a scan, lowest row first.
+
+        The frame of the message is the sensor's name.
+        """
         message = self._bare_scan(self.sensor.name)
         message.ranges = scan.ranges.ravel().astype(np.float32)
         return message
 
     def make_sensor(self) -> None:
-        """Create the lidar."""
+        """Create the lidar that the sensor's element describes."""
         sensor = self.sensor.sensor
         lidar = sensor.lidar or Lidar()
         self.lidar = LidarSensor(
@@ -71,14 +74,14 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
         )
 
     def scan_message(self, frame: str, scan: Scan, least_intensity: float = 0.0) -> Any:
-        """Return a LaserScan of the middle row of a scan."""
+        """Return a LaserScan of the middle row of a scan; lower intensities become `least_intensity`."""
         message, row = self._bare_scan(frame), self.lidar.vertical.count // 2
         message.ranges = scan.ranges[row].astype(np.float32)
         message.intensities = np.maximum(scan.intensities[row], least_intensity).astype(np.float32)
         return message
 
     def _bare_scan(self, frame: str) -> Any:
-        """Return a LaserScan without ranges."""
+        """Return a LaserScan with angles and limits, but without ranges."""
         lidar, message = self.lidar, self.message(_SCAN, frame)
         message.angle_min, message.angle_max = float(lidar.horizontal.min_angle), float(lidar.horizontal.max_angle)
         message.angle_increment = float(lidar.horizontal.step)
@@ -88,9 +91,9 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
     def points(self, scan: Scan) -> Any:
         """Return the points of a scan in m in the sensor's frame, shape (n, 3).
 
-        A point is not finite if its ray had no hit.
+        The coordinates of a point are not finite if its ray had no hit.
         """
-        with np.errstate(invalid="ignore"):  # for 0 times infinity
+        with np.errstate(invalid="ignore"):  # A ray without a hit has an infinite range, and 0 times infinity is NaN.
             return self.lidar.directions * scan.ranges.reshape(-1, 1)
 
     def finite(self, scan: Scan, least_intensity: float = 0.0) -> tuple[Any, Any]:
@@ -100,7 +103,7 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
         return points[kept], np.maximum(intensities[kept], least_intensity)
 
     def old_cloud(self, frame: str, scan: Scan, least_intensity: float = 0.0) -> Any:
-        """Return a scan as ``sensor_msgs/msg/PointCloud``."""
+        """Return the hits of a scan as ``sensor_msgs/msg/PointCloud``."""
         message = self.message("sensor_msgs/msg/PointCloud", frame)
         points, intensities = self.finite(scan, least_intensity)
         point, channel = get_message("geometry_msgs/msg/Point32"), get_message("sensor_msgs/msg/ChannelFloat32")
@@ -109,7 +112,7 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
         return message
 
     def range_message(self, frame: str, scan: Scan, radiation: str) -> Any:
-        """Return a Range with the minimum distance of a scan."""
+        """Return a ``sensor_msgs/msg/Range`` with the minimum distance of a scan."""
         message = self.message("sensor_msgs/msg/Range", frame)
         lidar = self.lidar
         spans = [sweep.max_angle - sweep.min_angle for sweep in (lidar.horizontal, lidar.vertical)]
@@ -134,12 +137,16 @@ class RayParameters(FrameName):
 
 
 class ClassicRaySensor(_OneLidar[RayParameters]):
-    """``libgazebo_ros_ray_sensor.so``."""
+    """The substitute for ``libgazebo_ros_ray_sensor.so``."""
 
     PARAMETERS = RayParameters
 
     def make_topics(self) -> None:
-        """Create the topic with the type that the parameters request."""
+        """Create the topic with the message type that the parameters request.
+
+        Raises:
+            LinkwrightError: SIM137, the message type is not an output type of a lidar.
+        """
         kinds = {
             "LaserScan": self._scan,
             "PointCloud2": self._cloud,
@@ -158,7 +165,7 @@ class ClassicRaySensor(_OneLidar[RayParameters]):
         self.output = self.node.publisher(f"sensor_msgs/msg/{kind}", "~/out", SENSOR_QOS)
 
     def publish(self, scan: Scan) -> None:
-        """Publish a scan with the type that the parameters request."""
+        """Publish a scan in the message type that the parameters request."""
         self.output.publish(self._publish(scan))
 
     def _scan(self, scan: Scan) -> Any:
@@ -185,37 +192,37 @@ class LaserParameters(FrameName):
 
 
 class OldLaser(_OneLidar[LaserParameters]):
-    """``libgazebo_ros_laser.so`` and ``libgazebo_ros_gpu_laser.so`` of ROS 1."""
+    """The substitute for ``libgazebo_ros_laser.so`` and ``libgazebo_ros_gpu_laser.so`` of ROS 1."""
 
     PARAMETERS = LaserParameters
     IGNORED = ("gaussianNoise", "hokuyoMinIntensity")
     KIND: ClassVar[str] = _SCAN
 
     def make_topics(self) -> None:
-        """Create the topic."""
+        """Create the topic that the parameters name, with the plugin's message type."""
         self.output = self.node.publisher(self.KIND, self.parameters.topic_name, SENSOR_DATA_QOS.depth)
 
     @property
     def rate(self) -> float:
-        """The rate of the sensor, or of the plugin."""
+        """The scans per simulated second, from the sensor, or else from the plugin."""
         return self.sensor.sensor.update_rate or self.parameters.update_rate
 
     def publish(self, scan: Scan) -> None:
-        """Publish a scan as the plugin's message."""
+        """Publish a scan in the plugin's message type."""
         self.output.publish(self.output_message(self.classic_frame(), scan))
 
     def output_message(self, frame: str, scan: Scan) -> Any:
-        """Return the message of a scan: a LaserScan."""
+        """Return a scan in the plugin's message type; by default a LaserScan."""
         return self.scan_message(frame, scan)
 
 
 class OldBlockLaser(OldLaser):
-    """``libgazebo_ros_block_laser.so`` of ROS 1, which publishes points."""
+    """The substitute for ``libgazebo_ros_block_laser.so`` of ROS 1, which publishes points."""
 
     KIND = "sensor_msgs/msg/PointCloud"
 
     def output_message(self, frame: str, scan: Scan) -> Any:
-        """Return the message of a scan: a PointCloud."""
+        """Return a scan as a PointCloud."""
         return self.old_cloud(frame, scan)
 
 
@@ -228,14 +235,14 @@ class RangeParameters(LaserParameters):
 
 
 class OldRange(OldLaser):
-    """``libgazebo_ros_range.so`` of ROS 1, which publishes the minimum distance."""
+    """The substitute for ``libgazebo_ros_range.so`` of ROS 1, which publishes the minimum distance."""
 
     PARAMETERS = RangeParameters
     IGNORED = ("gaussianNoise", "fov")
     KIND = "sensor_msgs/msg/Range"
 
     def output_message(self, frame: str, scan: Scan) -> Any:
-        """Return the message of a scan: a Range."""
+        """Return the minimum distance of a scan as a Range."""
         return self.range_message(frame, scan, getattr(self.parameters, "radiation", ""))
 
 
@@ -251,20 +258,21 @@ class VelodyneParameters(LaserParameters):
 
 
 class Velodyne(_OneLidar[VelodyneParameters]):
-    """``libgazebo_ros_velodyne_laser.so`` of velodyne_simulator: points with intensity, ring and time.
+    """The substitute for ``libgazebo_ros_velodyne_laser.so`` of velodyne_simulator.
 
-    The points are ordered by the firings of all lasers; in an organized cloud each firing is a row.
+    Points have an intensity, a ring and a time. They are ordered by the firings of all lasers; in an organized cloud,
+    each firing is a row.
     """
 
     PARAMETERS = VelodyneParameters
     IGNORED = ("gaussianNoise",)
 
     def make_topics(self) -> None:
-        """Create the topic."""
+        """Create the topic for the point cloud."""
         self.output = self.node.publisher(_CLOUD, self.parameters.topic_name, SENSOR_QOS)
 
     def publish(self, scan: Scan) -> None:
-        """Publish a scan as a point cloud."""
+        """Publish the points whose ranges and intensities are within the limits of the parameters."""
         parameters = self.parameters
         message = self.message(_CLOUD, self.classic_frame())
         shape = scan.ranges.shape
@@ -287,13 +295,13 @@ class Velodyne(_OneLidar[VelodyneParameters]):
 
 
 class GzLidar(_LidarPlugin[NoParameters]):
-    """``gpu_lidar`` and ``lidar`` of gz, which publish a scan and a cloud of its points."""
+    """The sensors ``gpu_lidar`` and ``lidar`` of gz, which publish a scan and a point cloud."""
 
     _scans: Output
     _clouds: Output
 
     def make_topics(self) -> None:
-        """Create the topics."""
+        """Create the topics for scans and points."""
         self._frame = self.gz_frame()
         self._scans = self.gz_output(_SCAN, "scan")
         topic = self.sensor.sensor.topic or self.gz_topic("scan")

@@ -1,6 +1,6 @@
-"""The logical camera of gz: publishes the names and poses of the models in its view, without an image.
+"""The logical camera of gz, which publishes the models in its view instead of an image.
 
-Source: gz-sensors (topic, view), ros_gz (messages). A model is in view when the origin of its frame is.
+Source: gz-sensors (topic, view), ros_gz (messages). A model is in view if the origin of its frame is in view.
 """
 
 from __future__ import annotations
@@ -18,18 +18,18 @@ _IMAGE, _MODEL = "ros_gz_interfaces/msg/LogicalCameraImage", "ros_gz_interfaces/
 
 
 class GzLogicalCamera(OneTopic[NoParameters]):
-    """``logical_camera`` of gz."""
+    """The sensor ``logical_camera`` of gz, which publishes names and poses of models."""
 
     def make_sensor(self) -> None:
-        """Read the shape of the view frustum."""
+        """Read the view frustum from the sensor's element."""
         self._view = self.sensor.sensor.logical_camera or LogicalCamera()
 
     def make_topics(self) -> None:
-        """Create the topic."""
+        """Create the topic for ``ros_gz_interfaces/msg/LogicalCameraImage``."""
         self.output = self.gz_output(_IMAGE, "logical_camera")
 
     def measure(self) -> None:
-        """Find the models in view, and publish them."""
+        """Publish the names and poses of the models in view."""
         camera = compose(self.simulation.link_pose(self.sensor.link), self.sensor.pose)
         message = self.message(_IMAGE, self.gz_frame())
         message.pose = pose_message(camera)

@@ -1,4 +1,4 @@
-"""The data with which participants and endpoints announce themselves (SPDP and SEDP; DDSI-RTPS 2.5, 8.5 and 9.6.2)."""
+"""Announcements of participants and endpoints (SPDP and SEDP; DDSI-RTPS 2.5, 8.5 and 9.6.2)."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ class ParticipantData:
     """The announcement of a participant.
 
     Attributes:
-        prefix: the prefix of its GUIDs.
-        vendor: the vendor of its implementation.
-        lease: seconds of silence after which it counts as gone.
+        prefix: the prefix of the participant's GUIDs.
+        vendor: the vendor of the implementation.
+        lease: the seconds of silence after which the participant counts as gone.
         discovery: the addresses for discovery.
-        user: the addresses of its readers and writers that do not announce their own.
+        user: the addresses of the participant's readers and writers that do not announce their own.
     """
 
     prefix: bytes
@@ -39,7 +39,10 @@ class ParticipantData:
 
 @dataclass(frozen=True, slots=True)
 class EndpointData:
-    """The announcement of a remote reader or writer; without `addresses`, it listens at those of its participant."""
+    """The announcement of a remote reader or writer.
+
+    Without `addresses`, the endpoint listens at the addresses of its participant.
+    """
 
     guid: bytes
     topic: str
@@ -63,7 +66,10 @@ def describe_participant(prefix: bytes, name: str, lease: float, addresses: list
 
 
 def describe_endpoint(guid: bytes, topic: str, type_name: str, facts: bytes) -> bytes:
-    """Return the SEDP sample that announces one of our readers or writers: reliable and volatile, as for services."""
+    """Return the SEDP sample that announces one of our readers or writers.
+
+    The announced QoS is reliable and volatile, as for services.
+    """
     return _LITTLE_ENDIAN_LIST + v.parameters(
         (v.PID_ENDPOINT_GUID, guid),
         (v.PID_PARTICIPANT_GUID, guid[: v.PREFIX] + v.PARTICIPANT),
@@ -79,16 +85,18 @@ def describe_endpoint(guid: bytes, topic: str, type_name: str, facts: bytes) -> 
 
 
 def key_of(guid: bytes, *, gone: bool = False) -> bytes:
-    """Return the inline QoS that identifies an endpoint, or announces that it is gone."""
+    """Return the inline QoS that identifies an endpoint; with `gone`, that announces its end."""
     status = ((v.PID_STATUS_INFO, bytes((0, 0, 0, _GONE))),) if gone else ()
     return v.parameters((v.PID_KEY_HASH, guid), *status)
 
 
 def gone_guid(sample: Data) -> bytes:
-    """Return the GUID of the participant or endpoint that a sample announces as gone; empty if it announces none.
+    """Return the GUID of the participant or endpoint that a sample announces as gone.
+
+    The GUID is empty if the sample announces no departure.
 
     Raises:
-        MalformedError: the sample does not name one.
+        MalformedError: the sample announces a departure without a GUID.
     """
     status = sample.inline.get(v.PID_STATUS_INFO)
     if not status or not status[0][3:4] or not status[0][3] & _GONE:

@@ -1,4 +1,7 @@
-"""Parse incoming RTPS messages, as far as they are supported, and build outgoing ones (DDSI-RTPS 2.5, 9.4)."""
+"""Parsing of incoming RTPS messages, and building of outgoing ones (DDSI-RTPS 2.5, 9.4).
+
+Only the submessages that Linkwright uses are supported.
+"""
 
 from __future__ import annotations
 
@@ -33,17 +36,17 @@ class Data:
     """A sample, or a fragment of one.
 
     Attributes:
-        source: the GUID prefix of its participant.
-        reader: the entity that it is for; `UNKNOWN` for all that match.
-        writer: the GUID of its writer.
-        number: its sequence number.
+        source: the GUID prefix of the sender's participant.
+        reader: the entity that the sample is for; `UNKNOWN` for all matching readers.
+        writer: the GUID of the writer.
+        number: the sequence number.
         order: the byte order of `inline`, ``<`` or ``>``.
         inline: the inline QoS.
         payload: the serialized payload; None if there is only a key.
-        time: when it was written, in ns since the epoch; 0 if that is not known.
+        time: when the sample was written, in ns since the epoch; 0 if that is not known.
         first: for fragments, the number of the first one, from 1; 0 for a whole sample.
-        fragment: for fragments, the size of each.
-        size: for fragments, the size of the sample.
+        fragment: for fragments, the size of each, in bytes.
+        size: for fragments, the size of the sample, in bytes.
     """
 
     source: bytes
@@ -61,7 +64,10 @@ class Data:
 
 @dataclass(frozen=True, slots=True)
 class Heartbeat:
-    """HEARTBEAT: a writer has the samples from `first` to `last`; without samples, `first` is `last` plus one."""
+    """HEARTBEAT: a writer has the samples from `first` to `last`, both inclusive.
+
+    If the writer has no samples, `first` is `last` plus one.
+    """
 
     source: bytes
     reader: bytes
@@ -73,7 +79,10 @@ class Heartbeat:
 
 @dataclass(frozen=True, slots=True)
 class Gap:
-    """GAP: the samples from `start` to before `base`, and `others`, are not for a reader or are no longer available."""
+    """GAP: some samples are not for a reader, or are no longer available.
+
+    These are the samples from `start` to before `base`, and those in `others`.
+    """
 
     source: bytes
     reader: bytes
@@ -85,7 +94,7 @@ class Gap:
 
 @dataclass(frozen=True, slots=True)
 class AckNack:
-    """ACKNACK: a reader has every sample before `base`; of the later samples it lacks `missing`."""
+    """ACKNACK: a reader has every sample before `base`, and lacks the samples in `missing`."""
 
     source: bytes
     reader: bytes
@@ -118,12 +127,12 @@ class _Context:
 
 
 def vendor_of(packet: bytes) -> bytes:
-    """Return the vendor that sent a message; empty if the packet is not an RTPS message."""
+    """Return the vendor id of a message's sender; empty if the packet is not an RTPS message."""
     return packet[6:8] if packet[:4] == b"RTPS" and len(packet) >= _HEADER else b""
 
 
 def parse(packet: bytes, own_prefix: bytes) -> Iterator[Submessage]:
-    """Yield the submessages that are for a participant, up to the first malformed one."""
+    """Yield the submessages for a participant, up to the first malformed one."""
     if not vendor_of(packet):
         return
     context = _Context(packet[8:_HEADER], own=own_prefix)
@@ -213,41 +222,41 @@ def _bits(body: bytes, offset: int, base: int, count: int, order: str) -> list[i
 
 
 def message(prefix: bytes, *submessages: bytes, to: bytes = b"") -> bytes:
-    """Build a message from a participant, to the participant with the prefix `to` or to all."""
+    """Build a message from a participant, to the participant with the prefix `to`, or to all."""
     destination = _submessage(_INFO_DST, 0, to) if to else b""
     return b"RTPS" + VERSION + VENDOR + prefix + destination + b"".join(submessages)
 
 
 def info_timestamp(nanoseconds: int) -> bytes:
-    """Build INFO_TS, which gives the time at which the following submessages were written."""
+    """Build INFO_TS: when the following submessages were written, in ns since the epoch."""
     seconds, rest = divmod(nanoseconds, NANOSECONDS_PER_SECOND)
     return _submessage(_INFO_TS, 0, struct.pack("<II", seconds, (rest << 32) // NANOSECONDS_PER_SECOND))
 
 
 def data(reader: bytes, writer: bytes, number: int, payload: bytes | None, inline: bytes = b"") -> bytes:
-    """Build DATA; without a payload, DATA contains only the key in `inline`."""
+    """Build DATA. Without a payload, DATA contains only the key in `inline`."""
     flags = (_INLINE if inline else 0) | (0 if payload is None else _HAS_DATA)
     head = struct.pack("<HH", 0, 16) + reader + writer + _pack(number)
     return _submessage(_DATA, flags, head + inline + (payload or b""))
 
 
 def fragments_of(payload: bytes) -> int:
-    """Return the number of fragments that a payload is divided into."""
+    """Return the number of fragments into which a payload is divided."""
     return (len(payload) + FRAGMENT - 1) // FRAGMENT
 
 
 def data_fragment(reader: bytes, writer: bytes, number: int, payload: bytes, which: int, inline: bytes = b"") -> bytes:
-    """Build DATA_FRAG with one fragment of a payload; fragments are counted from 1."""
+    """Build DATA_FRAG with one fragment of a payload. Fragments are counted from 1."""
     head = _fragment_head(reader, writer, number, len(payload), which)
     part = payload[(which - 1) * FRAGMENT : which * FRAGMENT]
     return _submessage(_DATA_FRAG, _INLINE if inline else 0, head + inline + part)
 
 
 def fragment_start(reader: bytes, writer: bytes, number: int, size: int, which: int, length: int) -> bytes:
-    """Build the beginning of DATA_FRAG, up to the bytes of the fragment, which end the message.
+    """Build the beginning of DATA_FRAG, which the bytes of the fragment must follow.
 
     Args:
-        reader: the entity that it is for.
+        reader: the entity that the fragment is for.
         writer: the entity that wrote the payload.
         number: the sequence number.
         size: the size of the payload in bytes.
@@ -264,7 +273,7 @@ def _fragment_head(reader: bytes, writer: bytes, number: int, size: int, which: 
 
 
 def heartbeat(reader: bytes, writer: bytes, first: int, last: int, count: int, *, final: bool = False) -> bytes:
-    """Build HEARTBEAT."""
+    """Build HEARTBEAT for the samples from `first` to `last`."""
     body = reader + writer + _pack(first) + _pack(last) + struct.pack("<I", count)
     return _submessage(_HEARTBEAT, _FINAL if final else 0, body)
 
@@ -277,7 +286,10 @@ def gap(reader: bytes, writer: bytes, start: int, base: int) -> bytes:
 def acknack(
     reader: bytes, writer: bytes, base: int, missing: Collection[int], count: int, *, final: bool = True
 ) -> bytes:
-    """Build ACKNACK: every sample before `base` has arrived; `missing` lists missing samples, up to 256 from there."""
+    """Build ACKNACK: every sample before `base` has arrived, and those in `missing` are missing.
+
+    At most the first 256 sample numbers from `base` can be listed as missing.
+    """
     size = max(missing) - base + 1 if missing else 0
     words = [0] * ((size + 31) // 32)
     for number in missing:

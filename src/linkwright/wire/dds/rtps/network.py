@@ -1,4 +1,4 @@
-"""The UDP sockets of a participant, and the addresses at which it looks for other participants."""
+"""The UDP sockets of a participant, and the addresses at which it looks for others."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ class Places:
     """The addresses of a participant, and the addresses at which it looks for others.
 
     Attributes:
-        own: its addresses, without ports.
+        own: the participant's addresses, without ports.
         ports: the ports at which others may listen.
         hosts: the unicast addresses of others.
-        interfaces: the addresses of the interfaces that multicast is sent through.
+        interfaces: the addresses of the interfaces through which multicast is sent.
         ttl: the time to live of multicast packets; 0 for this machine only.
         only_here: whether packets from other machines are ignored.
     """
@@ -50,7 +50,7 @@ class Places:
 
 
 def places_of(settings: Settings) -> Places:
-    """Return where to look for participants with the given settings; see `docs/decisions/0011-dds.md`."""
+    """Return the addresses that follow from the settings; see `docs/decisions/0011-dds.md`."""
     others = tuple(own_addresses()[:3])
     local = settings.range is Range.LOCALHOST and bool(settings.peers)
     machine = settings.range is Range.MACHINE or (settings.range is Range.LOCALHOST and not local)
@@ -114,12 +114,12 @@ class Network:
             except BlockingIOError:
                 return None
             except OSError:
-                continue  # a process that we sent to no longer listens (Windows reports that here)
+                continue  # A receiver of our packets no longer listens (Windows reports this here).
             if not self._places.only_here or self.is_here(source[0]):
                 return packet, source
 
     def send(self, packets: Iterable[Packet]) -> None:
-        """Send messages; packets that the system does not accept are lost, and readers request them again."""
+        """Send messages. A packet that the system refuses is lost, and readers request it again."""
         burst = 0
         for packet, addresses in packets:
             burst += len(packet)
@@ -139,7 +139,7 @@ class Network:
                 self.socket.sendto(packet, self._group)
 
     def best_of(self, addresses: Iterable[Address]) -> tuple[Address, ...]:
-        """Return the addresses to send to for a receiver: one on this machine if there is one, otherwise all."""
+        """Return the addresses to use for one receiver: one on this machine if any, otherwise all."""
         known = tuple(dict.fromkeys(addresses))
         here = sorted(
             (address for address in known if self.is_here(address[0])), key=lambda address: address[0] != _LOOPBACK

@@ -1,7 +1,7 @@
-"""An RTPS participant with readers and writers of services for the participants of Fast DDS.
+"""An RTPS participant with readers and writers of services, for communication with Fast DDS.
 
-It communicates with Fast DDS only. Other participants learn that it exists, because the address of a Fast DDS
-participant is not known before it has answered, but no endpoints are announced to them.
+Other participants learn that it exists, because the address of a Fast DDS participant is not known before it has
+answered. But endpoints are announced only to Fast DDS.
 """
 
 from __future__ import annotations
@@ -94,9 +94,9 @@ class RtpsParticipant:
 
     Args:
         settings: the domain and the discovery range.
-        name: its own name.
-        changed: called in its thread, or in the caller's thread, when a reader or writer was matched, was heard or
-            left.
+        name: the name that the participant announces for itself.
+        changed: called when a remote reader or writer was matched, has sent its first packet or has left; in the
+            participant's thread, or in the caller's thread.
 
     Raises:
         OSError: no socket is available.
@@ -139,7 +139,7 @@ class RtpsParticipant:
         Args:
             topic: the DDS topic.
             type_name: the DDS type.
-            facts: its USER_DATA.
+            facts: the reader's USER_DATA.
             on_data: called in the participant's thread with each sample.
         """
         with self._lock:
@@ -189,14 +189,14 @@ class RtpsParticipant:
         return number
 
     def matched_readers(self, local: LocalWriter) -> list[bytes]:
-        """Return the GUIDs of the remote readers that one of our writers writes to."""
+        """Return the GUIDs of the remote readers that match one of our writers."""
         with self._lock:
             return list(local.writer.readers)
 
     def matched_writers(self, local: LocalReader) -> dict[bytes, float | None]:
-        """Return the GUIDs of the writers matched with one of our readers, and when each was first heard.
+        """Return the writers that match one of our readers, by GUID, and when each sent a heartbeat.
 
-        The times are by the steady clock; None for a writer that has not been heard yet.
+        The value is the time of the first heartbeat, in seconds of the steady clock; None if none has arrived yet.
         """
         with self._lock:
             return {guid: local.reader.heard_at(guid) for guid in local.reader.writers}
@@ -217,7 +217,7 @@ class RtpsParticipant:
             return local.reader.last_of(writer)
 
     def expect(self, prefixes: Iterable[bytes]) -> None:
-        """Look for participants that were discovered elsewhere until each has answered."""
+        """Look for participants that were discovered elsewhere, until each has answered."""
         with self._lock:
             expected = frozenset(prefixes)
             if expected - self._expected:
@@ -226,7 +226,7 @@ class RtpsParticipant:
         self._ring()
 
     def close(self) -> None:
-        """Announce the departure and end the thread."""
+        """Announce the departure of the participant, and end the thread."""
         self._closing = True
         self._ring()
         if threading.current_thread() is not self._thread:
@@ -266,7 +266,7 @@ class RtpsParticipant:
         self._network.send(packets)
 
     def _due(self) -> float:
-        """Do the work that is due; return the seconds until the next work."""
+        """Do the work that is due; return the seconds until the next work is due."""
         now = time.monotonic()
         packets: list[Packet] = []
         with self._lock:
@@ -411,7 +411,7 @@ class RtpsParticipant:
     def _understand(self, packet: bytes, source: Address, calls: list[Callable[[], None]]) -> list[Packet]:
         """Process a packet; return the packets that answer it.
 
-        Callbacks that must be called without holding the lock are appended to `calls`.
+        Callbacks are appended to `calls`, because they must be called without holding the lock.
         """
         packets: list[Packet] = []
         vendor = vendor_of(packet)
@@ -433,9 +433,9 @@ class RtpsParticipant:
         return packets
 
     def _on_stranger(self, submessage: Submessage, source: Address) -> list[Packet]:
-        """Answer a participant that is not matched: neither side lacks anything.
+        """Answer a participant that is not matched that neither side lacks anything.
 
-        So it stops repeating itself.
+        After this answer, the participant stops repeating its messages.
         """
         self._count += 1
         if isinstance(submessage, AckNack) and submessage.writer in (v.PUBLICATIONS_WRITER, v.SUBSCRIPTIONS_WRITER):

@@ -1,7 +1,7 @@
 """RTPS readers that request missing samples (DDSI-RTPS 2.5, 8.4.12).
 
-A sample is passed on when it arrives, even if an earlier one is still missing: requests and responses do not need an
-order, and no call waits for another one.
+A sample is passed on when it arrives, even if an earlier one is still missing: the order of requests and responses does
+not matter, and no call waits for another one.
 """
 
 from __future__ import annotations
@@ -34,7 +34,12 @@ class _Incomplete:
     parts: dict[int, bytes] = field(default_factory=dict)
 
     def add(self, first: int, payload: bytes) -> bytes | None:
-        """Add consecutive fragments, starting with number `first`; return the sample once it is complete."""
+        """Add consecutive fragments; return the sample once it is complete, otherwise None.
+
+        Args:
+            first: the number of the first fragment.
+            payload: the bytes of the fragments.
+        """
         count = (self.size + self.fragment - 1) // self.fragment
         for start in range(0, len(payload), self.fragment):
             number = first + start // self.fragment
@@ -87,7 +92,7 @@ class Reader:
     """An RTPS reader.
 
     Args:
-        guid: 16 bytes.
+        guid: the reader's GUID, 16 bytes.
     """
 
     def __init__(self, guid: bytes) -> None:
@@ -100,15 +105,15 @@ class Reader:
         return self._writers.keys()
 
     def heard_at(self, writer: bytes) -> float | None:
-        """Return when the first heartbeat of a writer arrived, by the steady clock.
+        """Return when the first heartbeat of a writer arrived, in seconds of the steady clock.
 
-        From then on, the writer has matched this reader.
+        Returns None if none has arrived. A heartbeat shows that the writer has matched this reader.
         """
         matched = self._writers.get(writer)
         return matched.heard_at if matched is not None else None
 
     def last_of(self, writer: bytes) -> int:
-        """Return the highest sequence number that a writer has announced."""
+        """Return the highest sequence number that a writer has announced to this reader."""
         matched = self._writers.get(writer)
         return matched.last if matched is not None else 0
 
@@ -125,7 +130,7 @@ class Reader:
         self._writers.pop(writer, None)
 
     def on_data(self, sample: Data) -> Data | None:
-        """Return a sample that is new and complete, otherwise None."""
+        """Handle a sample or fragment; return the sample if it is new and complete, otherwise None."""
         matched = self._writers.get(sample.writer)
         if matched is None or matched.has(sample.number) or sample.number > max(matched.low, matched.last) + _FURTHEST:
             return None
@@ -139,7 +144,7 @@ class Reader:
         return complete
 
     def on_heartbeat(self, heartbeat: Heartbeat) -> list[Packet]:
-        """Return the acknowledgement of a heartbeat, with the numbers of missing samples."""
+        """Handle a heartbeat; return its acknowledgement, with the numbers of missing samples."""
         matched = self._writers.get(heartbeat.writer)
         if matched is None:
             return []
@@ -152,7 +157,10 @@ class Reader:
         return [self._answer(heartbeat.writer, matched)]
 
     def on_gap(self, gap: Gap) -> None:
-        """Handle a GAP: samples that the writer no longer has, or that are not for this reader, count as received."""
+        """Handle a GAP: the samples in it count as received.
+
+        Such samples are not for this reader, or the writer no longer has them.
+        """
         matched = self._writers.get(gap.writer)
         if matched is None:
             return
@@ -166,12 +174,15 @@ class Reader:
                 matched.add(number)
 
     def remind(self, now: float) -> list[Packet]:
-        """Return packets that repeat the request to silent writers, if it is time to do so."""
+        """Return the packets that repeat a request to silent writers, if a request is due."""
         silent = [item for item in self._writers.items() if item[1].heard_at is None and now >= item[1].due]
         return [self._ask(writer, matched, now) for writer, matched in silent]
 
     def next_reminder(self) -> float | None:
-        """Return when to call `remind` next; None if all writers have been heard."""
+        """Return when to call `remind` next, in seconds of the steady clock.
+
+        Returns None if all writers have sent a heartbeat.
+        """
         return min((matched.due for matched in self._writers.values() if matched.heard_at is None), default=None)
 
     @staticmethod
@@ -186,7 +197,7 @@ class Reader:
         return part.add(sample.first, sample.payload)
 
     def _ask(self, writer: bytes, matched: _Writer, now: float) -> Packet:
-        """Return an acknowledgement of nothing, with base 0.
+        """Return an acknowledgement of no samples, with base 0, as a request for a heartbeat.
 
         Fast DDS answers base 0, but not base 1, with a heartbeat.
         """

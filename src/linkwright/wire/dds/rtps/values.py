@@ -81,13 +81,13 @@ def parameters(*pairs: tuple[int, bytes]) -> bytes:
 
 
 def read_parameters(data: bytes, offset: int, order: str) -> tuple[Parameters, int]:
-    """Parse the list of parameters at an offset.
+    """Parse the parameter list at an offset.
 
     Returns:
-        The parameters, each with all its values, and the offset of the end of the list.
+        The parameters, each with all its values, and the offset after the list.
 
     Raises:
-        MalformedError: the list has no end.
+        MalformedError: the list has no end marker.
     """
     found: Parameters = {}
     while offset + 4 <= len(data):
@@ -133,7 +133,7 @@ def locator(address: Address) -> bytes:
 
 
 def read_locators(values: list[bytes], order: str) -> list[Address]:
-    """Return the UDPv4 addresses among locators; Fast DDS announces shared memory too."""
+    """Return the UDPv4 addresses among locators. Others, such as shared memory, are ignored."""
     found = []
     for value in values:
         if len(value) >= 24:
@@ -144,16 +144,17 @@ def read_locators(values: list[bytes], order: str) -> list[Address]:
 
 
 def related_identity(guid: bytes, number: int) -> bytes:
-    """Return inline QoS that identifies the related sample by the GUID of its writer (or reader) and its number.
+    """Return inline QoS that identifies the related sample by a GUID and a sequence number.
 
-    It is written in the forms that all versions of Fast DDS understand.
+    The GUID is that of the related sample's writer or reader. The inline QoS has the forms that all versions of Fast
+    DDS understand.
     """
     value = guid + _IDENTITY.pack(number >> 32, number & 0xFFFF_FFFF)
     return parameters((PID_RELATED_SAMPLE_IDENTITY, value), (PID_RELATED_SAMPLE_IDENTITY_OF_FAST_DDS, value))
 
 
 def read_related_identity(inline: Parameters, order: str) -> tuple[bytes, int] | None:
-    """Return the GUID and the sequence number of the related sample in inline QoS; None if there is none."""
+    """Return the GUID and sequence number of the related sample in inline QoS; None if absent."""
     for pid in (PID_RELATED_SAMPLE_IDENTITY, PID_RELATED_SAMPLE_IDENTITY_OF_FAST_DDS):
         for value in inline.get(pid, ()):
             if len(value) >= 24:
@@ -163,5 +164,5 @@ def read_related_identity(inline: Parameters, order: str) -> tuple[bytes, int] |
 
 
 def is_reader(guid: bytes) -> bool:
-    """Return whether a GUID belongs to a reader (9.3.1.2)."""
+    """Return whether a GUID is that of a reader (9.3.1.2)."""
     return bool(guid[15] & 0x04)

@@ -1,4 +1,4 @@
-"""RTPS writers that ensure that every reader receives every sample (DDSI-RTPS 2.5, 8.4.9)."""
+"""RTPS writers, which ensure that every reader receives every sample (DDSI-RTPS 2.5, 8.4.9)."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class Writer:
     """An RTPS writer.
 
     Args:
-        guid: 16 bytes.
+        guid: the writer's GUID, 16 bytes.
         lasting: whether late-joining readers receive earlier samples.
     """
 
@@ -75,14 +75,14 @@ class Writer:
         return self._readers.keys()
 
     def has_heard(self, reader: bytes) -> bool:
-        """Return whether a reader has answered, which shows that it has matched this writer."""
+        """Return whether a reader has answered, which shows that the reader has matched this writer."""
         matched = self._readers.get(reader)
         return matched is not None and matched.heard
 
     def match(self, reader: bytes, addresses: tuple[Address, ...]) -> list[Packet]:
         """Match a reader, and return the first packets for it.
 
-        These are the history if this writer keeps it, and otherwise a heartbeat.
+        If the writer is `lasting`, these are the samples of its history, otherwise a heartbeat.
         """
         if reader in self._readers:
             self._readers[reader].addresses = addresses
@@ -93,7 +93,7 @@ class Writer:
         return self._everything(reader, matched)
 
     def unmatch(self, reader: bytes) -> None:
-        """Stop writing to a reader."""
+        """Remove a reader, to which nothing more is written."""
         self._readers.pop(reader, None)
         self._forget_acknowledged()
 
@@ -103,7 +103,7 @@ class Writer:
         Args:
             payload: the serialized payload; None to announce the end of the entity whose key is in `inline`.
             inline: the inline QoS.
-            to: the GUID prefix of the readers that it is for; other readers are notified that it is not for them.
+            to: the GUID prefix of the readers that the sample is for; empty for all. Other readers receive a GAP.
 
         Returns:
             The packets to send.
@@ -130,7 +130,7 @@ class Writer:
         return self._last
 
     def on_acknack(self, acknack: AckNack) -> list[Packet]:
-        """Handle an ACKNACK; return the packets that repeat the missing samples."""
+        """Handle an ACKNACK; return the packets that resend the missing samples."""
         matched = self._readers.get(acknack.reader)
         if matched is None:
             return []
@@ -146,7 +146,7 @@ class Writer:
         return packets
 
     def on_nack_frag(self, nack: NackFrag) -> list[Packet]:
-        """Handle a NACK_FRAG; return the packets that repeat the missing fragments."""
+        """Handle a NACK_FRAG; return the packets that resend the missing fragments."""
         matched, change = self._readers.get(nack.reader), self._changes.get(nack.number)
         if matched is None or change is None or change.payload is None or not change.is_for(nack.reader):
             return []
@@ -159,7 +159,7 @@ class Writer:
         return [*packets, self._packet(nack.reader, matched, self._beat(nack.reader, matched))]
 
     def remind(self, now: float) -> list[Packet]:
-        """Return heartbeats for the readers that have not acknowledged for some time."""
+        """Return heartbeats for the readers that have not acknowledged all samples, if they are due."""
         packets = []
         for reader, matched in self._readers.items():
             if matched.base <= self._last and now >= matched.due:
@@ -169,7 +169,10 @@ class Writer:
         return packets
 
     def next_reminder(self) -> float | None:
-        """Return when to call `remind` next; None if everything has been acknowledged."""
+        """Return when to call `remind` next, in seconds of the steady clock.
+
+        Returns None if everything has been acknowledged.
+        """
         return min((matched.due for matched in self._readers.values() if matched.base <= self._last), default=None)
 
     # --- inside ------------------------------------------------------------------------------------------------------

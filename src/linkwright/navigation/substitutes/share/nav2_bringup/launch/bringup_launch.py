@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Localization or mapping, and navigation, with the arguments of nav2_bringup's file of this name."""
+"""Launches localization or mapping, and navigation, with the arguments of nav2_bringup's file of the same name."""
 
 from ament_index_python.packages import get_package_share_path
 from launch.actions import DeclareLaunchArgument, GroupAction, IncludeLaunchDescription, OpaqueFunction
@@ -27,14 +27,14 @@ DECLARED = {
 
 
 def included(context, file, *names):
-    """Include a launch file of this package, and pass it the named launch configurations."""
+    """Return the action that includes a launch file with the named configurations."""
     arguments = context.launch_configurations
     source = PythonLaunchDescriptionSource(str(HERE / "launch" / file))
     return IncludeLaunchDescription(source, launch_arguments=[(name, arguments[name]) for name in names])
 
 
 def start(context):
-    """Return the container, if one is used, and the included launch files."""
+    """Return the actions that start the container, if one is used, and include the launch files."""
     level = context.launch_configurations["log_level"]
     container = Node(
         package="rclcpp_components",

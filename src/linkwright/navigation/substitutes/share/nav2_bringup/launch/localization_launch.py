@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A map and localization on it, with the arguments of nav2_bringup's file of this name."""
+"""Launches the map server and localization, with the arguments of nav2_bringup's file of the same name."""
 
 from ament_index_python.packages import get_package_share_path
 from launch.actions import DeclareLaunchArgument, OpaqueFunction, SetEnvironmentVariable
@@ -14,7 +14,10 @@ SERVERS = (
 
 
 def start(context):
-    """Return the servers; a map given as an argument overrides the map of the parameters."""
+    """Return the actions that start the servers.
+
+    The argument ``map``, if given, overrides the map of the parameters.
+    """
     file = context.launch_configurations["map"]
     return managed(
         context, "lifecycle_manager_localization", SERVERS, {"map_server": {"yaml_filename": file}} if file else {}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Planning and following paths, with the arguments of nav2_bringup's file of this name."""
+"""Launches path planning and following, with the arguments of nav2_bringup's file of the same name."""
 
 from ament_index_python.packages import get_package_share_path
 from launch.actions import DeclareLaunchArgument, OpaqueFunction, SetEnvironmentVariable
@@ -13,7 +13,10 @@ MONITOR = Server("nav2_collision_monitor", "collision_monitor", "nav2_collision_
 
 
 def servers(*, is_monitored):
-    """Return the nodes; velocities pass through the smoother, and the collision monitor if there is one."""
+    """Return the servers, with remappings that pass velocities through the smoother.
+
+    Velocities also pass through the collision monitor, if one is used.
+    """
     smoothed = () if is_monitored else (("cmd_vel_smoothed", "cmd_vel"),)
     return [
         Server("nav2_controller", "controller_server", "nav2_controller::ControllerServer", remappings=(COMMANDED,)),
@@ -33,7 +36,10 @@ def servers(*, is_monitored):
 
 
 def start(context):
-    """Return the servers, including a collision monitor if the parameters contain one."""
+    """Return the actions that start the servers.
+
+    A collision monitor is included if the parameters contain one.
+    """
     has_parameters = HasNodeParams(context.launch_configurations["params_file"], "collision_monitor")
     is_monitored = MONITOR.is_here and has_parameters.perform(context) == "True"
     return managed(context, "lifecycle_manager_navigation", servers(is_monitored=is_monitored))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""RViz with a view for navigation, with the arguments of nav2_bringup's file of this name."""
+"""Launches RViz with a view for navigation, with the arguments of nav2_bringup's file of the same name."""
 
 from ament_index_python.packages import get_package_share_path
 from launch.actions import DeclareLaunchArgument, OpaqueFunction, Shutdown
@@ -18,7 +18,7 @@ NAMES = ("tf", "tf_static", "goal_pose", "clicked_point", "initialpose")
 
 
 def start(context):
-    """Return the action that runs RViz; the launch shuts down when RViz exits."""
+    """Return the actions that run RViz, and shut the launch down when RViz exits."""
     arguments = context.launch_configurations
     config, namespace, remappings = arguments["rviz_config"], "", []
     if is_true(context, "use_namespace"):

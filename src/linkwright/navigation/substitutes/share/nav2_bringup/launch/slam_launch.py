@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Mapping, with the arguments of nav2_bringup's file of this name."""
+"""Launches mapping, with the arguments of nav2_bringup's file of the same name."""
 
 from ament_index_python.packages import get_package_share_path
 from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription, OpaqueFunction
@@ -20,7 +20,10 @@ ARGUMENTS = {
 
 
 def start(context):
-    """Return the map saver and the mapping node, which gets its parameters from the file if it has some."""
+    """Return the actions that start the map saver and the mapping node.
+
+    The mapping node gets the parameters of the file if the file contains any for it.
+    """
     configurations = context.launch_configurations
     arguments = {"use_sim_time": configurations["use_sim_time"]}
     if HasNodeParams(configurations["params_file"], "slam_toolbox").perform(context) == "True":

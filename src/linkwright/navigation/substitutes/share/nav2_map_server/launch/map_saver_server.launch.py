@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The map saver server and its lifecycle manager, as in nav2_map_server's file of this name."""
+"""Launches the map saver server and its lifecycle manager, as in nav2_map_server's file of the same name."""
 
 from launch_ros.actions import Node
 
@@ -7,7 +7,7 @@ from launch import LaunchDescription
 
 
 def generate_launch_description():
-    """Return a launch description with both nodes."""
+    """Return a launch description with the map saver and its manager."""
     return LaunchDescription(
         [
             Node(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Mapping that continues from a saved map, with the arguments of slam_toolbox's file of this name."""
+"""Launches mapping that continues from a saved map, with the arguments of slam_toolbox's file of the same name."""
 
 from ament_index_python.packages import get_package_share_path
 from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
@@ -8,7 +8,7 @@ from launch import LaunchDescription
 
 
 def generate_launch_description():
-    """Return a launch description with the parameter file's argument and the node."""
+    """Return a launch description with the argument for the parameter file, and the node."""
     share = get_package_share_path("slam_toolbox")
     parameters = share / "config" / "mapper_params_lifelong.yaml"
     return LaunchDescription(

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The node named by the including launch file, with the parameters of the argument `slam_params_file`."""
+"""Launches the slam_toolbox node that the including launch file names.
+
+The parameters are those of the file in the argument ``slam_params_file``.
+"""
 
 from launch.actions import DeclareLaunchArgument
 from launch.substitutions import AndSubstitution, LaunchConfiguration, NotSubstitution

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Launch the simulation and its window, with the arguments of the gazebo_ros file of this name."""
+"""Launches the simulation and its window, with the arguments of the gazebo_ros file of this name."""
 
 from ament_index_python.packages import get_package_share_path
 from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
@@ -11,7 +11,7 @@ from launch import LaunchDescription
 
 
 def generate_launch_description():
-    """Return the server and the substitute for the window."""
+    """Return a launch description that includes the server and the substitute for the window."""
     folder = get_package_share_path("gazebo_ros") / "launch"
     return LaunchDescription(
         [

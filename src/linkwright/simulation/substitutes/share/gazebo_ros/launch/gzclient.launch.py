@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Launch the substitute for Gazebo's window, with the arguments of the gazebo_ros file of this name."""
+"""Launches the substitute for Gazebo's window, with the arguments of the gazebo_ros file of this name."""
 
 from launch.actions import DeclareLaunchArgument, OpaqueFunction, Shutdown
 from launch.conditions import IfCondition
@@ -13,14 +13,14 @@ IGNORED = ("extra_gazebo_args", "gdb", "help", "profile", "valgrind", "verbose",
 
 
 def start(context):
-    """Return the node that logs the address of the window."""
+    """Return the node that replaces Gazebo's window."""
     required = IfCondition(LaunchConfiguration("gui_required")).evaluate(context)
     on_exit = [Shutdown()] if required else None
     return [Node(package="gazebo_ros", executable="gzclient", on_exit=on_exit)]
 
 
 def generate_launch_description():
-    """Return the arguments, and a function that starts the node once they are known."""
+    """Return a launch description that declares the arguments and starts the node."""
     return LaunchDescription(
         [
             *(DeclareLaunchArgument(name, default_value="", description="Not used") for name in IGNORED),

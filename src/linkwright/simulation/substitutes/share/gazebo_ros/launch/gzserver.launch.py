@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Launch the simulation, with the arguments of the gazebo_ros file of this name."""
+"""Launches the simulation, with the arguments of the gazebo_ros file of this name."""
 
 import shlex
 
@@ -38,7 +38,7 @@ IGNORED = {
 
 
 def start_server(context):
-    """Return the server with the command line that gzserver would be given."""
+    """Return the node of the server, configured by the launch arguments."""
 
     def value(name):
         return LaunchConfiguration(name).perform(context)
@@ -61,7 +61,7 @@ def start_server(context):
 
 
 def generate_launch_description():
-    """Return the arguments, and a function that starts the server once they are known."""
+    """Return a launch description that declares the arguments and starts the server."""
     empty = get_package_share_path("gazebo_ros") / "worlds" / "empty.world"
     declared = {
         "world": (str(empty), "The world: path of a file"),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Launch a bridge, with the arguments of the ros_gz_bridge file of this name."""
+"""Launches a bridge, with the arguments of the ros_gz_bridge file of this name."""
 
 from launch.actions import DeclareLaunchArgument
 from launch.substitutions import LaunchConfiguration
@@ -21,7 +21,7 @@ ARGUMENTS = {
 
 
 def generate_launch_description():
-    """Return the launch description of the bridge."""
+    """Return a launch description that declares the arguments and starts the bridge."""
     arguments = [
         DeclareLaunchArgument(name, default_value=default, description=description)
         for name, (default, description) in ARGUMENTS.items()

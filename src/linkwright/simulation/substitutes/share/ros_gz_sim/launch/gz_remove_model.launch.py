@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Remove a model from the world, with the arguments of the ros_gz_sim file of this name."""
+"""Removes a model from the world, with the arguments of the ros_gz_sim file of this name."""
 
 from launch.actions import DeclareLaunchArgument
 from launch.substitutions import LaunchConfiguration
@@ -11,7 +11,7 @@ ARGUMENTS = {"world": "The world's name", "entity_name": "The model's name"}
 
 
 def generate_launch_description():
-    """Return the node that removes the model."""
+    """Return a launch description that declares the arguments and removes the model."""
     arguments = [
         DeclareLaunchArgument(name, default_value="", description=description)
         for name, description in ARGUMENTS.items()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Launch the simulation without a window, with the arguments of the ros_gz_sim file of this name."""
+"""Launches the simulation without a window, with the arguments of the ros_gz_sim file of this name."""
 
 from launch.actions import DeclareLaunchArgument, OpaqueFunction
 from launch.substitutions import LaunchConfiguration
@@ -17,14 +17,14 @@ ARGUMENTS = {
 
 
 def start(context):
-    """Return the server with the requested world."""
+    """Return the node of the server with the requested world."""
     arguments = {name: LaunchConfiguration(name).perform(context) for name in ("world_sdf_file", "world_sdf_string")}
     parameters = {name: value for name, value in arguments.items() if value}
     return [Node(package="ros_gz_sim", executable="gzserver", output="screen", parameters=[parameters])]
 
 
 def generate_launch_description():
-    """Return the arguments, and a function that starts the server once they are known."""
+    """Return a launch description that declares the arguments and starts the server."""
     arguments = [
         DeclareLaunchArgument(name, default_value=default, description=description)
         for name, (default, description) in ARGUMENTS.items()

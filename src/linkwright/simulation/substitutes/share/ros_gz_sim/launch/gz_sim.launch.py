@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Launch the simulation as ``gz sim`` does, with the arguments of the ros_gz_sim file of this name."""
+"""Launches the simulation as ``gz sim`` does, with the arguments of the ros_gz_sim file of this name."""
 
 import shlex
 
@@ -22,7 +22,7 @@ ARGUMENTS = {
 
 
 def start(context):
-    """Return the server, or the substitute for the window if only the window is requested."""
+    """Return the node of the server, or of the substitute for the window if only that is requested."""
     arguments = LaunchConfiguration("gz_args").perform(context) or LaunchConfiguration("ign_args").perform(context)
     command = gz_server(shlex.split(arguments))
     required = IfCondition(LaunchConfiguration("on_exit_shutdown")).evaluate(context)
@@ -39,7 +39,7 @@ def start(context):
 
 
 def generate_launch_description():
-    """Return the arguments, and a function that starts the server once they are known."""
+    """Return a launch description that declares the arguments and starts the server."""
     arguments = [
         DeclareLaunchArgument(name, default_value=default, description=description)
         for name, (default, description) in ARGUMENTS.items()

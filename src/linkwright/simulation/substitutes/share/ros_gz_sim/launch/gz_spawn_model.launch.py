@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Spawn a model in the world, with the arguments of the ros_gz_sim file of this name."""
+"""Spawns a model in the world, with the arguments of the ros_gz_sim file of this name."""
 
 from launch.actions import DeclareLaunchArgument
 from launch.substitutions import LaunchConfiguration
@@ -26,7 +26,7 @@ PARAMETERS = {"model_string": "string", "entity_name": "name", "roll": "R", "pit
 
 
 def generate_launch_description():
-    """Return the node that spawns the model."""
+    """Return a launch description that declares the arguments and spawns the model."""
     arguments = [
         DeclareLaunchArgument(name, default_value=default, description=description)
         for name, (default, description) in ARGUMENTS.items()

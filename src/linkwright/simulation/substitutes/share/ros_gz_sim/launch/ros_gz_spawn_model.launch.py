@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Launch a bridge and spawn a model, with the arguments of the ros_gz_sim file of this name."""
+"""Launches a bridge and spawns a model, with the arguments of the ros_gz_sim file of this name."""
 
 from ament_index_python.packages import get_package_share_path
 from launch.actions import IncludeLaunchDescription
@@ -11,6 +11,6 @@ FILES = {"ros_gz_bridge": "ros_gz_bridge.launch.py", "ros_gz_sim": "gz_spawn_mod
 
 
 def generate_launch_description():
-    """Return both launch files, which declare the arguments."""
+    """Return a launch description that includes the launch files of the bridge and the spawner."""
     paths = [get_package_share_path(package) / "launch" / name for package, name in FILES.items()]
     return LaunchDescription([IncludeLaunchDescription(PythonLaunchDescriptionSource(str(path))) for path in paths])

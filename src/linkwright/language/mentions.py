@@ -1,0 +1,175 @@
+"""Where the other files of a package name links and joints: YAML, RViz configurations and launch files.
+
+The formats do not tell what a text means. A mention is certain only where a key, an option or the format tells that a
+link or a joint is meant.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from linkwright.language.definitions import NameKind
+from linkwright.loading.deferred import lazy_pattern
+from linkwright.xmltree.tokens import Kind, tokens
+
+FILES = (".yaml", ".yml", ".rviz", ".launch.py", ".launch.xml", ".launch", ".py")
+"""The endings of the files that may mention names."""
+
+_MOST_TEXT = 1_000_000
+"""Characters; longer files are data and not configuration."""
+_FRAMES = lazy_pattern(r"(?i)(^|[ _/])(frame|frame_id|link|base|tip|root|ee_link|footprint|body)s?(_name)?s?$")
+_JOINTS = lazy_pattern(r"(?i)((^|[ _])(joint|wheel)(_?names?)?s?$)|(^|_)joint_names?$")
+_OF_JOINTS = frozenset(
+    (
+        "joint_limits",
+        "gains",
+        "pid_gains",
+        "constraints",
+        "initial_positions",
+        "joints",
+        "zeros",
+        "dependent_joints",
+        "default_acceleration",
+    )
+)
+"""Keys whose content is a mapping from joints."""
+_OF_LINKS = frozenset(("Links", "Frames", "Tree"))
+"""Keys of displays of RViz whose content is a mapping from links or frames."""
+_FRAME_OPTIONS = ("--frame-id", "--child-frame-id")
+
+
+@dataclass(frozen=True, slots=True)
+class Mention:
+    """A text that is the name of a link or joint, or that may be.
+
+    Attributes:
+        name: the text.
+        file: the file.
+        start: the offset of the first character.
+        kinds: what the place names, as far as it tells; empty if it does not tell.
+    """
+
+    name: str
+    file: Path
+    start: int
+    kinds: tuple[NameKind, ...] = ()
+
+    @property
+    def end(self) -> int:
+        """The offset behind the last character."""
+        return self.start + len(self.name)
+
+
+def mentions_in(text: str, file: Path, names: frozenset[str]) -> Iterator[Mention]:
+    """Yield the places in a file where one of some names is a whole value, key, string or word.
+
+    Args:
+        text: the text of the file; a text that cannot be parsed has no mentions.
+        file: the file, whose name tells its format.
+        names: the names.
+    """
+    if len(text) > _MOST_TEXT or not any(name in text for name in names):
+        return
+    if file.name.endswith((".yaml", ".yml", ".rviz")):
+        yield from _in_yaml(text, file, names)
+    elif file.name.endswith(".py"):
+        yield from _in_python(text, file, names)
+    else:
+        yield from _in_launch_xml(text, file, names)
+
+
+def _in_yaml(text: str, file: Path, names: frozenset[str]) -> Iterator[Mention]:
+    try:
+        documents = [*yaml.compose_all(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))]
+    except (yaml.YAMLError, RecursionError):
+        return
+    pending: list[tuple[Any, tuple[str, ...], bool]] = [(document, (), False) for document in reversed(documents)]
+    while pending:
+        node, keys, is_key = pending.pop()
+        if isinstance(node, yaml.MappingNode):
+            for key, value in reversed(node.value):
+                own = key.value if isinstance(key, yaml.ScalarNode) else ""
+                pending.append((value, (*keys, own), False))
+                pending.append((key, keys, True))
+        elif isinstance(node, yaml.SequenceNode):
+            pending += [(item, keys, False) for item in reversed(node.value)]
+        elif isinstance(node, yaml.ScalarNode) and node.value in names:
+            start = node.start_mark.index + (1 if node.style in ("'", '"') else 0)
+            if text[start : start + len(node.value)] == node.value:
+                yield Mention(node.value, file, start, _kinds_of_keys(keys, is_key=is_key))
+
+
+def _kinds_of_keys(keys: Sequence[str], *, is_key: bool) -> tuple[NameKind, ...]:
+    last = keys[-1] if keys else ""
+    if is_key:
+        if not _OF_LINKS.isdisjoint(keys):
+            return (NameKind.LINK,)
+        return (NameKind.JOINT,) if last in _OF_JOINTS else ()
+    return kinds_of_key(last)
+
+
+def kinds_of_key(key: str) -> tuple[NameKind, ...]:
+    """Return the kinds of names that a parameter holds, by its name; empty if the name does not tell."""
+    if _JOINTS.search(key):
+        return (NameKind.JOINT,)
+    return (NameKind.LINK,) if _FRAMES.search(key) else ()
+
+
+def _in_python(text: str, file: Path, names: frozenset[str]) -> Iterator[Mention]:
+    try:
+        tree = ast.parse(text)
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return
+    starts = [0]
+    for line in text.splitlines(keepends=True):
+        starts.append(starts[-1] + len(line))
+    lines = text.splitlines()
+    kinds = dict(_kinds_in_python(tree))
+    for node in ast.walk(tree):
+        if not isinstance(node, ast.Constant) or node.value not in names or not isinstance(node.value, str):
+            continue
+        column = len(lines[node.lineno - 1].encode()[: node.col_offset].decode(errors="replace"))
+        start = starts[node.lineno - 1] + column + 1
+        if text[start : start + len(node.value)] == node.value:  # a string with one quote and no prefix
+            yield Mention(node.value, file, start, kinds.get(id(node), ()))
+
+
+def _kinds_in_python(tree: ast.AST) -> Iterator[tuple[int, tuple[NameKind, ...]]]:
+    """Yield the identity of strings whose place tells what they name: values of parameters, frames of an option."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Dict):
+            for key, value in zip(node.keys, node.values, strict=True):
+                if isinstance(key, ast.Constant) and isinstance(key.value, str):
+                    for item in value.elts if isinstance(value, (ast.List, ast.Tuple)) else [value]:
+                        yield id(item), kinds_of_key(key.value)
+        elif isinstance(node, ast.keyword) and node.arg:
+            yield id(node.value), kinds_of_key(node.arg)
+        elif isinstance(node, (ast.List, ast.Tuple)):
+            for option, item in zip(node.elts, node.elts[1:], strict=False):
+                if isinstance(option, ast.Constant) and option.value in _FRAME_OPTIONS:
+                    yield id(item), (NameKind.LINK,)
+
+
+def _in_launch_xml(text: str, file: Path, names: frozenset[str]) -> Iterator[Mention]:
+    words = re.compile(rf"(?<![\w/.-])(?:{'|'.join(map(re.escape, sorted(names, key=len, reverse=True)))})(?![\w/.-])")
+    for token in tokens(text):
+        if token.kind is not Kind.START:
+            continue
+        given = {attribute.name: attribute for attribute in token.attributes() if attribute.value}
+        key = given["name"].value if "name" in given else ""
+        for attribute in given.values():
+            value = attribute.value or ""
+            for found in words.finditer(value):
+                is_whole = found[0] == value and attribute.name in ("value", "default")
+                option = value[: found.start()].split()[-1:] if attribute.name == "args" else []
+                kinds = kinds_of_key(key or "") if is_whole else ()
+                if option and option[0] in _FRAME_OPTIONS:
+                    kinds = (NameKind.LINK,)
+                yield Mention(found[0], file, attribute.value_start + found.start(), kinds)

@@ -1,0 +1,281 @@
+"""Where an XML text defines and uses names: macros with their parameters, properties, arguments, links and joints.
+
+Nothing is expanded, so the branches of conditions and uncalled macros count, too. A property is known by
+its name alone, because scopes of xacro are dynamic; a name that is a parameter of the macro around it is that
+parameter.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from linkwright.language.definitions import NameKind
+from linkwright.language.grammar import PREFIX, XACRO
+from linkwright.loading.deferred import lazy_pattern
+from linkwright.xacro.expressions.template import TokenKind, tokenize
+from linkwright.xacro.faults import Fault
+from linkwright.xacro.macros import Parameter, parse_parameters
+from linkwright.xmltree.tokens import Kind, Token, TokenAttribute, tokens
+
+_ENTITY = lazy_pattern(r"&(?:lt|gt|quot|apos|amp);")
+_CHARACTERS = {"&lt;": "<", "&gt;": ">", "&quot;": '"', "&apos;": "'", "&amp;": "&"}
+_INNERMOST = lazy_pattern(r"\$\([^()]*\)|\$\{[^{}]*\}")
+_LINK, _JOINT = (NameKind.LINK,), (NameKind.JOINT,)
+_BOTH = (NameKind.LINK, NameKind.JOINT)
+_REFERENCES: dict[tuple[str, str], tuple[NameKind, ...]] = {
+    ("parent", "link"): _LINK,
+    ("child", "link"): _LINK,
+    ("mimic", "joint"): _JOINT,
+    ("gazebo", "reference"): _BOTH,
+    ("chain", "base_link"): _LINK,
+    ("chain", "tip_link"): _LINK,
+    ("disable_collisions", "link1"): _LINK,
+    ("disable_collisions", "link2"): _LINK,
+    ("enable_collisions", "link1"): _LINK,
+    ("enable_collisions", "link2"): _LINK,
+    ("disable_default_collisions", "link"): _LINK,
+    ("virtual_joint", "child_link"): _LINK,
+    ("end_effector", "parent_link"): _LINK,
+    ("link_sphere_approximation", "link"): _LINK,
+    ("passive_joint", "name"): _JOINT,
+}
+"""Element and attribute -> the kinds of names that the value may have; those of SRDF are among them."""
+_USERS_OF_JOINTS = frozenset({"transmission", "ros2_control", "group", "group_state"})
+"""Elements in which ``<joint>`` and ``<link>`` use a name instead of defining it."""
+_OF_LINKS = lazy_pattern(r"(?i)(frame|link|body|bumper)(_?(id|name))?s?$")
+_OF_JOINTS = lazy_pattern(r"(?i)joint(_?names?)?s?(_\d+)?$")
+
+
+@dataclass(frozen=True, slots=True)
+class Occurrence:
+    """A name in a text.
+
+    Attributes:
+        kind: the kind of the name.
+        name: the name as written. That of a link, joint or material may contain expressions.
+        file: the file.
+        start: the offset of the first character.
+        is_definition: whether it defines the name.
+        owner: for a parameter, its macro; otherwise the macro that contains the place, or an empty string.
+    """
+
+    kind: NameKind
+    name: str
+    file: Path
+    start: int
+    is_definition: bool = False
+    owner: str = ""
+
+    @property
+    def end(self) -> int:
+        """The offset behind the last character."""
+        return self.start + len(self.name)
+
+
+def kinds_of_text(tag: str) -> tuple[NameKind, ...]:
+    """Return the kinds of names that the text of an element may have, by the element's name; empty for none.
+
+    It is meant for the parameters of plugins, such as ``<left_joint>`` or ``<robot_base_frame>``.
+    """
+    if _OF_JOINTS.search(tag):
+        return _JOINT
+    return _LINK if _OF_LINKS.search(tag) else ()
+
+
+def occurrences_in(text: str, file: Path) -> Iterator[Occurrence]:
+    """Yield the names in a text, which may be incomplete."""
+    yield from _Scan(text, file).all()
+
+
+class _Scan:
+    """One pass over a text, with the macros and elements around the current place."""
+
+    def __init__(self, text: str, file: Path) -> None:
+        self._text = text
+        self._file = file
+        self._is_srdf = ".srdf" in file.name
+        self._macros: list[tuple[str, frozenset[str]]] = []
+        self._tags: list[str] = []
+        self._namespaces = frozenset(re.findall(r"<xacro:include\b[^<>]*?\bns=[\"'](\w+)", text))
+
+    def all(self) -> Iterator[Occurrence]:
+        """Yield the names of all tokens."""
+        for token in tokens(self._text):
+            if token.kind is Kind.START and token.name:
+                yield from self._start_tag(token)
+                if not token.is_whole:
+                    self._tags.append(token.name)
+            elif token.kind is Kind.END:
+                yield from self._called(token)
+                if token.name in self._tags:
+                    while self._tags.pop() != token.name:
+                        pass
+                if token.name == "xacro:macro" and self._macros:
+                    self._macros.pop()
+            elif token.kind is Kind.TEXT and token.text.strip():
+                yield from self._character_data(token)
+
+    @property
+    def _macro(self) -> str:
+        return self._macros[-1][0] if self._macros else ""
+
+    def _start_tag(self, token: Token) -> Iterator[Occurrence]:
+        tag = token.name
+        given = {attribute.name: attribute for attribute in token.attributes() if attribute.value is not None}
+        yield from self._called(token)
+        for attribute in given.values():
+            yield from self.in_text(attribute.value or "", attribute.value_start)
+        if tag == "xacro:macro":
+            yield from self._macro_definition(given, is_whole=token.is_whole)
+        elif tag in ("xacro:property", "xacro:insert_block"):
+            yield from self._property(given.get("name"), is_definition=tag == "xacro:property")
+        elif tag == "xacro:arg":
+            yield from self._named(NameKind.ARGUMENT, given.get("name"), is_definition=True)
+        elif tag == "xacro:call":
+            yield from self._named(NameKind.MACRO, given.get("macro"))
+        elif tag.startswith(PREFIX) and tag not in XACRO:
+            owner = tag.removeprefix(PREFIX).rpartition(".")[2]
+            for attribute in given.values():
+                yield Occurrence(NameKind.PARAMETER, attribute.name, self._file, attribute.start, owner=owner)
+        else:
+            yield from self._of_robot(token, given)
+
+    def _macro_definition(self, given: dict[str, TokenAttribute], *, is_whole: bool) -> Iterator[Occurrence]:
+        name, params = given.get("name"), given.get("params")
+        owner = "" if name is None else (name.value or "").removeprefix(PREFIX)
+        if name is not None and owner:
+            start = name.value_end - len(owner)
+            yield Occurrence(NameKind.MACRO, owner, self._file, start, is_definition=True)
+        found: set[str] = set()
+        for parameter in _parameters((params.value or "") if params else ""):
+            bare = parameter.name.lstrip("*")
+            start = (params.value_start if params else 0) + parameter.start + len(parameter.name) - len(bare)
+            yield Occurrence(NameKind.PARAMETER, bare, self._file, start, is_definition=True, owner=owner)
+            found.add(bare)
+        if not is_whole:
+            self._macros.append((owner, frozenset(found)))
+
+    def _called(self, token: Token) -> Iterator[Occurrence]:
+        tag = token.name
+        if tag.startswith(PREFIX) and tag not in XACRO:
+            name = tag.removeprefix(PREFIX).rpartition(".")[2]
+            if name:
+                start = token.name_start + len(tag) - len(name)
+                yield Occurrence(NameKind.MACRO, name, self._file, start, owner=self._macro)
+
+    def _property(self, attribute: TokenAttribute | None, *, is_definition: bool) -> Iterator[Occurrence]:
+        if attribute is not None and attribute.value and "$" not in attribute.value:
+            yield self._variable(attribute.value, attribute.value_start, is_definition=is_definition)
+
+    def _variable(self, name: str, start: int, *, is_definition: bool = False) -> Occurrence:
+        for owner, parameters in reversed(self._macros):
+            if name in parameters:
+                return Occurrence(NameKind.PARAMETER, name, self._file, start, owner=owner)
+        return Occurrence(NameKind.PROPERTY, name, self._file, start, is_definition, self._macro)
+
+    def _named(
+        self, kind: NameKind, attribute: TokenAttribute | None, *, is_definition: bool = False
+    ) -> Iterator[Occurrence]:
+        if attribute is not None and attribute.value:
+            yield Occurrence(kind, attribute.value, self._file, attribute.value_start, is_definition, owner=self._macro)
+
+    def _of_robot(self, token: Token, given: dict[str, TokenAttribute]) -> Iterator[Occurrence]:
+        tag, name = token.name, given.get("name")
+        if tag in ("link", "joint"):
+            kind = NameKind.LINK if tag == "link" else NameKind.JOINT
+            uses = self._is_srdf or not _USERS_OF_JOINTS.isdisjoint(self._tags)
+            yield from self._named(kind, name, is_definition=not uses)
+        elif tag == "material" and (token.is_whole or "visual" in self._tags or self._tags[-1:] == ["robot"]):
+            yield from self._named(NameKind.MATERIAL, name, is_definition=not token.is_whole)
+        for attribute in given.values():
+            for kind in _REFERENCES.get((tag, attribute.name), ()):
+                yield from self._named(kind, attribute)
+
+    def _character_data(self, token: Token) -> Iterator[Occurrence]:
+        yield from self.in_text(token.text, token.start)
+        tag = self._tags[-1] if self._tags else ""
+        written = token.text.strip()
+        if " " not in written:
+            for kind in kinds_of_text(tag):
+                start = token.start + token.text.index(written)
+                yield Occurrence(kind, written, self._file, start, owner=self._macro)
+
+    def in_text(self, text: str, start: int) -> Iterator[Occurrence]:
+        """Yield the names in the expressions and substitutions of a text.
+
+        Args:
+            text: an attribute's value or character data, as written.
+            start: its offset in the file.
+        """
+        if "$" not in text:
+            return
+        text = _ENTITY.sub(lambda found: _CHARACTERS[found[0]].ljust(len(found[0])), text)
+        try:
+            parts = tokenize(text)
+        except Fault:  # it is being typed
+            return
+        for part in parts:
+            begin = start + part.start + 2
+            if part.kind is TokenKind.SUBSTITUTION:
+                yield from self._substitution(part.text, begin)
+            elif part.kind is TokenKind.EXPRESSION:
+                yield from self._expression(part.text, begin)
+
+    def _substitution(self, inside: str, start: int) -> Iterator[Occurrence]:
+        if "$" in inside:
+            yield from self.in_text(inside, start)
+        command = re.match(r"\s*(\w+)\s+", inside)
+        if command is None:
+            return
+        argument = inside[command.end() :]
+        if command[1] == "arg" and "$" not in argument:
+            yield Occurrence(NameKind.ARGUMENT, argument.rstrip(), self._file, start + command.end())
+        elif command[1] == "eval":
+            yield from self._expression(argument, start + command.end())
+
+    def _expression(self, source: str, start: int) -> Iterator[Occurrence]:
+        if "$" in source:
+            yield from self.in_text(source, start)
+            while _INNERMOST.search(source):
+                source = _INNERMOST.sub(lambda found: "_" * len(found[0]), source)
+        body = source.replace("\n", " ").replace("\t", " ").rstrip()
+        lead = len(body) - len(body.lstrip())
+        try:
+            tree = ast.parse(body.lstrip(), mode="eval")
+        except (SyntaxError, ValueError, RecursionError, MemoryError):
+            return
+        line = body.lstrip().encode()
+
+        def at(column: int) -> int:
+            return start + lead + len(line[:column].decode(errors="replace"))
+
+        bound = {node.arg for node in ast.walk(tree) if isinstance(node, ast.arg)}
+        bound |= {node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Name) and node.id not in bound:
+                yield self._variable(node.id, at(node.col_offset))
+            elif isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
+                if node.value.id in self._namespaces and node.end_col_offset is not None:
+                    yield self._variable(node.attr, at(node.end_col_offset) - len(node.attr))
+            elif isinstance(node, ast.Call):
+                yield from self._argument(node, at)
+
+    def _argument(self, call: ast.Call, at: Callable[[int], int]) -> Iterator[Occurrence]:
+        called = call.func.attr if isinstance(call.func, ast.Attribute) else getattr(call.func, "id", "")
+        first: Sequence[ast.expr] = call.args[:1]
+        for node in first:
+            if called == "arg" and isinstance(node, ast.Constant) and isinstance(node.value, str):
+                start = at(node.col_offset) + 1
+                if self._text[start : start + len(node.value)] == node.value:
+                    yield Occurrence(NameKind.ARGUMENT, node.value, self._file, start)
+
+
+def _parameters(params: str) -> tuple[Parameter, ...]:
+    try:
+        return parse_parameters(params)
+    except Fault:  # they are being typed
+        return ()
