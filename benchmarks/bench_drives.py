@@ -15,7 +15,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from benchmarks.measure import Row
-from linkwright.control.controllers.controller import Controller, ControllerPlace
+from linkwright.control.controllers.controller import Controller, ControllerContext
 from linkwright.control.controllers.node import ControllerNode
 from linkwright.control.controllers.registry import controller_class
 from linkwright.control.hardware.interfaces import CommandInterface, Interfaces, StateInterface
@@ -56,7 +56,9 @@ class _Fleet:
 
     def _made(self, type_name: str, parameters: Mapping[str, Any], namespace: str) -> Controller[Any]:
         node = self._graph.create_node("drive", namespace=namespace, parameters=parameters)
-        controller = controller_class(type_name)(ControllerPlace("drive", ControllerNode(node, self._exchange), _RATE))
+        controller = controller_class(type_name)(
+            ControllerContext("drive", ControllerNode(node, self._exchange), _RATE)
+        )
         controller.on_configure()
         asked, measured = controller.command_interfaces(), controller.state_interfaces()
         assert not isinstance(asked, Interfaces)

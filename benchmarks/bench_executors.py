@@ -55,7 +55,7 @@ def messages_per_second(executor: SingleThreadedExecutor | MultiThreadedExecutor
     executor.shutdown()
     if spinner is not None:
         spinner.join()
-    graph.close_now()
+    graph.close_threadsafe()
     return MESSAGES / seconds
 
 
@@ -87,7 +87,7 @@ def spinning_messages_per_second(*, copies: bool = False) -> float:
     start = time.perf_counter()
     executor.spin()
     seconds = time.perf_counter() - start
-    graph.close_now()
+    graph.close_threadsafe()
     return MESSAGES / seconds
 
 
@@ -113,7 +113,7 @@ def latencies_us() -> list[float]:
         found.append((begun[number] - start) / 1_000)
     executor.shutdown()
     spinner.join()
-    graph.close_now()
+    graph.close_threadsafe()
     return found
 
 
@@ -134,7 +134,7 @@ def in_same_thread_us() -> float:
         executor.spin_once(0)
         found.append((begun[number] - start) / 1_000)
     executor.shutdown()
-    graph.close_now()
+    graph.close_threadsafe()
     return statistics.median(found)
 
 

@@ -30,7 +30,7 @@ from linkwright.nodes.options import NodeOptions
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.nodes.simulator import Simulator
-from linkwright.simulation.server.entities import entity_from
+from linkwright.simulation.server.entities import read_entity
 from linkwright.simulation.server.server import ServerOptions, SimulationServer
 from linkwright.simulation.server.worlds import load_world
 from linkwright.simulation.simulation import Simulation
@@ -244,12 +244,12 @@ def _server(graph: Graph, case: Case) -> SimulationServer:
     server.start()
     library = DescriptionLibrary()
     if case.robots:
-        robot = entity_from(_robot(case.arguments or {}, case.pixels), loaded.finder, library).model
+        robot = read_entity(_robot(case.arguments or {}, case.pixels), loaded.finder, library).model
         for number in range(case.robots):
             row, column = divmod(number, 10)
             place = (row * _BESIDE, column * _BESIDE, 0.12, 0.0, 0.0, 0.0, 1.0)
             server.spawn(robot, f"mbot{number}", place, f"mbot{number}" if number else "")
-    box = entity_from(_BOX, loaded.finder, library).model
+    box = read_entity(_BOX, loaded.finder, library).model
     for number in range(case.boxes):
         row, column = divmod(number, 40)
         simulation.spawn(box, f"box{number}", (row * 0.5, column * 0.5, 0.125, 0.0, 0.0, 0.0, 1.0))

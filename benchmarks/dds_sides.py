@@ -123,7 +123,7 @@ def send_ours(kind: str, seconds: float, rate: float) -> Result:
         publisher.publish(message)
 
     result = paced(send, seconds, rate)
-    graph.close_now()
+    graph.close_threadsafe()
     return result
 
 

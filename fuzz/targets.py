@@ -20,11 +20,11 @@ from linkwright.packages import PackageFinder
 from linkwright.rviz.config.rviz_config import RvizConfig
 from linkwright.sdf.frames import placed_links
 from linkwright.sdf.includes import resolve_includes
-from linkwright.sdf.listing import sdf_text
+from linkwright.sdf.listing import list_contents
 from linkwright.sdf.reader import read as read_world
 from linkwright.sdf.references import check_references
 from linkwright.sdf.resources import ResourceFinder
-from linkwright.sdf.saved import as_saved
+from linkwright.sdf.saved import with_saved_state
 from linkwright.sdf.text import parse_as_gazebo
 from linkwright.urdf import read, save, to_gv, tree_text
 from linkwright.urdf.plaintext import parse_as_urdfdom
@@ -144,8 +144,8 @@ def check_world(text: str) -> None:
     else:
         included = resolve_includes(reading.sdf, folder / "fuzz.sdf", _NO_MODELS)
         found += [*included.diagnostics, *check_references(included.sdf)]
-        assert len(sdf_text(included.sdf)) <= _LONGEST_OUTPUT
-        for world in map(as_saved, included.sdf.worlds):
+        assert len(list_contents(included.sdf)) <= _LONGEST_OUTPUT
+        for world in map(with_saved_state, included.sdf.worlds):
             if not has_errors(found):
                 assert all(place.name for place in placed_links(world))
     for diagnostic in found:

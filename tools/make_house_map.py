@@ -17,7 +17,7 @@ import numpy as np
 
 from linkwright.navigation.grids.grid import FREE, OCCUPIED, UNKNOWN, Grid
 from linkwright.navigation.grids.ray_counts import ray_counts
-from linkwright.navigation.maps.map_files import SavedAs, save_map
+from linkwright.navigation.maps.map_files import MapSaveSettings, save_map
 from linkwright.packages import PackageFinder
 from linkwright.sdf.resources import ResourceFinder
 from linkwright.sdf.worlds import World
@@ -84,4 +84,4 @@ def _seen(world: World) -> Grid:
 
 
 if __name__ == "__main__":
-    save_map(house_map(), SavedAs(name=str(PACKAGE / "maps" / "house"), free_thresh=0.196))
+    save_map(house_map(), MapSaveSettings(name=str(PACKAGE / "maps" / "house"), free_thresh=0.196))

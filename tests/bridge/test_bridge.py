@@ -308,7 +308,7 @@ def test_a_bridge_looks_again_when_a_process_was_killed():
         EndpointInfo(EndpointKind.PUBLISHER, node, "/rosout", "rcl_interfaces/msg/Log", QoSProfile(1), bytes(16))
     )
     assert messages == ["look"]
-    graph.close_now()
+    graph.close_threadsafe()
 
 
 def test_a_service_that_both_networks_have_is_left_alone(networks):
@@ -411,7 +411,7 @@ def test_what_a_new_publisher_says_waits_for_who_is_known_to_be_able_to_hear_it(
     now[0] += 0.1
     assert publisher.settle()
     assert not publisher.waits
-    graph.close_now()
+    graph.close_threadsafe()
 
 
 @pytest.mark.parametrize(("server", "client"), WAYS)

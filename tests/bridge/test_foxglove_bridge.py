@@ -12,7 +12,7 @@ import aiohttp
 import pytest
 
 from linkwright.bridge.foxglove import FoxgloveBridge
-from linkwright.bridge.foxglove.origins import is_welcome
+from linkwright.bridge.foxglove.origins import is_allowed_origin
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import DESCRIPTION_QOS, Graph
 from linkwright.messages import String, deserialize, get_message, get_service, serialize
@@ -317,7 +317,7 @@ async def test_only_meshes_of_packages_that_a_description_names_are_given(tmp_pa
     ],
 )
 def test_only_pages_that_are_welcome_connect(origin, welcome):
-    assert is_welcome(origin) is welcome
+    assert is_allowed_origin(origin) is welcome
 
 
 async def test_a_page_of_another_site_is_refused():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from linkwright.control.controllers.controller import Controller, ControllerPlace
+from linkwright.control.controllers.controller import Controller, ControllerContext
 from linkwright.control.controllers.node import ControllerNode
 from linkwright.control.hardware.interfaces import CommandInterface, Interface, Interfaces, StateInterface
 from linkwright.graph import Graph, LogRecord
@@ -33,7 +33,7 @@ class Stand:
         """A controller that is not configured yet; its name may have a namespace, its parameters nested mappings."""
         namespace, _, name = name.rpartition("/")
         node = self.graph.create_node(name, namespace=namespace or "/", parameters=parameters)
-        place = ControllerPlace(name, ControllerNode(node, self.exchange), 100.0, description)
+        place = ControllerContext(name, ControllerNode(node, self.exchange), 100.0, description)
         return controller(place)
 
     def activate(self, controller: Controller[Any], *, configure: bool = True) -> Any:

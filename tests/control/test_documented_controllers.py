@@ -25,7 +25,7 @@ from linkwright.control.manager.switching import STRICT
 from linkwright.diagnostics import LinkwrightError
 from linkwright.loading import extensions
 from linkwright.messages import get_message
-from linkwright.packages.readers.entry_points import in_pyproject
+from linkwright.packages.readers.entry_points import read_pyproject_group
 from tests.control.robots import joint, manager, robot
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
@@ -69,7 +69,7 @@ def installed(tmp_path, monkeypatch):
     facts.mkdir()
     (package / "__init__.py").touch()
     (package / "swing.py").write_text(code, encoding="utf-8")
-    lines = [f"[{GROUP}]", *in_pyproject(declared, GROUP), "my/Broken = nowhere:None"]
+    lines = [f"[{GROUP}]", *read_pyproject_group(declared, GROUP), "my/Broken = nowhere:None"]
     (facts / "entry_points.txt").write_text("\n".join(lines))
     monkeypatch.syspath_prepend(str(tmp_path))
     extensions._all_groups.cache_clear()

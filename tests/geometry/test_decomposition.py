@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from linkwright.geometry.decomposition import THICKNESS, convex_pieces, thickened
+from linkwright.geometry.decomposition import THICKNESS, convex_pieces, thicken
 from linkwright.geometry.polygon import triangulated
 
 CORNERS = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
@@ -49,8 +49,8 @@ def test_a_face_that_is_not_convex_is_triangles():
 
 def test_what_is_flat_gets_a_thickness():
     square = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
-    assert np.ptp(thickened(square), axis=0).tolist() == [1.0, 1.0, THICKNESS]
-    assert thickened(CORNERS) is CORNERS
+    assert np.ptp(thicken(square), axis=0).tolist() == [1.0, 1.0, THICKNESS]
+    assert thicken(CORNERS) is CORNERS
 
 
 def test_a_polygon_either_way_round_keeps_its_area():

@@ -96,7 +96,7 @@ def test_the_graph_changes_while_others_use_it():
     assert failures == []
     assert received
     assert graph.node_names() == ["/steady"]
-    graph.close_now()
+    graph.close_threadsafe()
     assert graph.endpoints() == []
 
 

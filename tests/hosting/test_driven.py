@@ -19,7 +19,7 @@ from linkwright.inertia import MeshLibrary
 from linkwright.inference import infer
 from linkwright.messages import get_message
 from linkwright.packages import PackageFinder
-from linkwright.simulation.server.entities import entity_from
+from linkwright.simulation.server.entities import read_entity
 from linkwright.simulation.server.server import ServerOptions, SimulationServer
 from linkwright.simulation.server.worlds import load_world
 from linkwright.simulation.simulation import Simulation
@@ -100,7 +100,7 @@ async def driven(path: Path):
     simulation = Simulation(loaded.world, loaded.finder)
     server = SimulationServer(simulation, graph.create_node("gazebo"), ServerOptions(usual_names=True))
     server.start()
-    model = entity_from(drive.text, loaded.finder, DescriptionLibrary()).model
+    model = read_entity(drive.text, loaded.finder, DescriptionLibrary()).model
     server.spawn(model, drive.name, (*drive.pose, 1.0))
     try:
         yield Driven(graph, server)

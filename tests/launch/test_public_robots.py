@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 from linkwright.diagnostics import LinkwrightError, package_hint
-from linkwright.launch.arguments import argument_listing
+from linkwright.launch.arguments import format_arguments
 from linkwright.launch.frontend.launch_file import load_launch_file
 from linkwright.messages.distribution import ASSUMED
 from linkwright.packages import PackageFinder, use_finder
@@ -204,7 +204,7 @@ class TestNamesThatRosHasByTheWay:
             return LaunchDescription([Chosen('q')])
         """
         path = file(text)
-        assert "'q'" in argument_listing(load_launch_file(path))
+        assert "'q'" in format_arguments(load_launch_file(path))
         assert await messages(path, q="two") == ["chosen two"]
 
     async def test_a_description_that_grows_while_it_is_visited(self, file: Any, messages: Any) -> None:

@@ -20,7 +20,7 @@ from nav2_common.launch import (
 
 from launch import LaunchContext
 from linkwright.diagnostics import LinkwrightError
-from linkwright.launch.arguments import argument_listing
+from linkwright.launch.arguments import format_arguments
 from linkwright.launch.frontend.launch_file import load_launch_file
 from linkwright.launch.model.description import LaunchDescription
 from linkwright.packages import PackageFinder, use_finder
@@ -236,7 +236,7 @@ Arguments (pass arguments as '<name>:=<value>'):
     ],
 )
 def test_show_args_is_alike_for_all_kinds(write: Any, name: str, text: str) -> None:
-    assert argument_listing(load_launch_file(write(name, text))) == LISTING
+    assert format_arguments(load_launch_file(write(name, text))) == LISTING
 
 
 async def test_an_error_three_includes_down_names_them_all(launch: Any, write: Any) -> None:
@@ -274,7 +274,7 @@ async def test_a_package_that_is_not_installed(launch: Any, write: Any) -> None:
         '<launch><arg name="a" default="1"/><include file="$(find-pkg-share no_such_bot)/launch/a.launch.py"/></launch>'
     )
     path = write("a.launch.xml", text)
-    assert "'a':" in argument_listing(load_launch_file(path))
+    assert "'a':" in format_arguments(load_launch_file(path))
     done = await launch(_file(path))
     assert "no_such_bot" in done.err
     assert not done.succeeded

@@ -10,7 +10,7 @@ import pytest
 from linkwright.diagnostics import LinkwrightError
 from linkwright.launch import LaunchTarget, print_description, show_arguments
 from linkwright.launch.arguments import check_arguments
-from linkwright.launch.engine.processes import _LONGEST_LINE, _Lines
+from linkwright.launch.engine.processes import _LONGEST_LINE, _LineSplitter
 from linkwright.launch.frontend.include import IncludeLaunchDescription
 from linkwright.launch.frontend.launch_file import load_launch_file
 from linkwright.launch.ros import Node, PushRosNamespace
@@ -162,7 +162,7 @@ async def test_a_namespace_that_no_node_can_be_in(launch, namespace: str) -> Non
 
 
 def test_what_a_process_writes_is_divided_into_lines() -> None:
-    lines = _Lines()
+    lines = _LineSplitter()
     assert lines.feed(b"one\r\ntw") == ["one"]
     assert lines.feed("o\n\n机".encode()[:-1]) == ["two", ""]
     assert lines.feed("机".encode()[-1:]) == []
@@ -172,7 +172,7 @@ def test_what_a_process_writes_is_divided_into_lines() -> None:
 
 
 def test_a_line_without_an_end_is_shown_in_pieces() -> None:
-    lines = _Lines()
+    lines = _LineSplitter()
     shown = [piece for _ in range(300) for piece in lines.feed(b"x" * 1000)]
     assert [len(piece) for piece in shown] == [_LONGEST_LINE] * 3
     assert lines.end() == []

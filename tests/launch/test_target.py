@@ -11,7 +11,7 @@ from launch.substitutions import LaunchConfiguration
 from launch import LaunchDescription
 from linkwright.diagnostics import LinkwrightError, Severity
 from linkwright.launch import LaunchTarget, parse_launch_words, show_arguments
-from linkwright.launch.arguments import argument_listing, check_arguments, parse_arguments
+from linkwright.launch.arguments import check_arguments, format_arguments, parse_arguments
 from linkwright.packages import PackageFinder
 
 Write = Callable[[str, str], Path]
@@ -135,7 +135,7 @@ class TestChecks:
         assert caught.value.diagnostics[0].hint == "add model:=VALUE"
 
     def test_listing(self) -> None:
-        assert argument_listing(self.description()) == (
+        assert format_arguments(self.description()) == (
             "Arguments (pass arguments as '<name>:=<value>'):\n"
             "\n"
             "    'gui':\n"
@@ -156,7 +156,7 @@ class TestChecks:
         )
 
     def test_listing_of_nothing(self) -> None:
-        assert argument_listing(LaunchDescription()).endswith("\n\n  No arguments.")
+        assert format_arguments(LaunchDescription()).endswith("\n\n  No arguments.")
 
 
 def test_show_arguments_of_the_shipped_package() -> None:

@@ -15,7 +15,7 @@ from linkwright.geometry.single import Pose
 from linkwright.packages import PackageFinder
 from linkwright.sdf import shapes
 from linkwright.sdf.frames import Frames, placed_links, transform_of
-from linkwright.sdf.saved import as_saved
+from linkwright.sdf.saved import with_saved_state
 
 WORLDS = Path(__file__).parents[3] / "shared" / "worlds"
 MANIFEST = WORLDS / "manifest.json"
@@ -75,7 +75,7 @@ def test_a_world_has_what_is_known_to_be_in_it(item):
 def test_models_stand_where_they_are_known_to(item):
     found = examined(item)
     assert found.sdf is not None
-    world = as_saved(found.sdf.worlds[0])
+    world = with_saved_state(found.sdf.worlds[0])
     frames = Frames(world)
     known = {each["name"]: each for each in item["facts"]["top_level_models"] if not each.get("pose_attributes")}
     for model in world.models:

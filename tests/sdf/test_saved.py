@@ -7,19 +7,19 @@ from math import pi
 import pytest
 
 from linkwright.sdf.frames import placed_links
-from linkwright.sdf.saved import as_saved
+from linkwright.sdf.saved import with_saved_state
 from tests.sdf.worlds import world
 
 MODEL = '<model name="m"><pose>9 9 9 0 0 0</pose><link name="a"/><link name="b"><pose>1 0 0 0 0 0</pose></link></model>'
 
 
 def places(inside: str) -> dict[str, tuple[float, ...]]:
-    return {placed_link.name: placed_link.pose[:3] for placed_link in placed_links(as_saved(world(inside)))}
+    return {placed_link.name: placed_link.pose[:3] for placed_link in placed_links(with_saved_state(world(inside)))}
 
 
 def test_a_world_without_a_state_is_as_it_is():
     plain = world(MODEL)
-    assert as_saved(plain) is plain
+    assert with_saved_state(plain) is plain
 
 
 def test_the_state_says_where_models_and_links_are_in_the_world():
@@ -47,7 +47,7 @@ def test_models_in_models_and_lights_have_their_state_too():
         <state><model name="o"><pose>2 0 0 0 0 0</pose><model name="i"><pose>7 0 0 0 0 0</pose></model></model>
         <light name="sun"><pose>0 0 3 0 0 0</pose></light></state>"""
     assert places(inside) == {"o::i::l": pytest.approx((7, 0, 0))}
-    assert as_saved(world(inside)).lights[0].pose.pose.xyz == (0, 0, 3)
+    assert with_saved_state(world(inside)).lights[0].pose.pose.xyz == (0, 0, 3)
 
 
 def test_what_was_put_in_is_there_and_what_was_taken_out_is_gone():

@@ -55,8 +55,8 @@ def test_the_first_point_is_where_it_begins_whatever_its_time():
 
 
 def test_without_points_it_is_nowhere():
-    assert not Walk(Script()).is_somewhere
-    assert not Walk(Script(trajectories=(Trajectory(),))).is_somewhere
+    assert not Walk(Script()).has_waypoints
+    assert not Walk(Script(trajectories=(Trajectory(),))).has_waypoints
 
 
 def test_a_path_is_round_and_with_tension_straight():

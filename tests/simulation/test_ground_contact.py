@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.simulation.server.ground_contact import stand_up, touches_nothing
+from linkwright.simulation.server.ground_contact import collision_warnings, lift_onto_ground
 from tests.simulation.worlds import GROUND, box, model, simulated
 
 PLATE = (
@@ -22,7 +22,7 @@ def height(*parts: str, z: float) -> float:
     """Where a box of 0.2 m is that was put somewhere."""
     simulation = simulated(*parts)
     simulation.spawn(model(box("crate", "0 0 0 0 0 0", "0.2 0.2 0.2")), "crate", (0.0, 0.0, z, 0.0, 0.0, 0.0, 1.0))
-    stand_up(simulation, "crate")
+    lift_onto_ground(simulation, "crate")
     return simulation.model_pose("crate")[2]
 
 
@@ -43,7 +43,7 @@ def test_a_box_in_a_wall_is_not_lifted() -> None:
 def test_it_comes_to_rest_there() -> None:
     simulation = simulated(PLATE)
     simulation.spawn(model(box("crate", "0 0 0 0 0 0", "0.2 0.2 0.2")), "crate")
-    stand_up(simulation, "crate")
+    lift_onto_ground(simulation, "crate")
     simulation.advance(500_000_000)
     x, y, z, *_ = simulation.model_pose("crate")
     assert (x, y, z) == pytest.approx((0.0, 0.0, 0.15), abs=1e-3)
@@ -55,5 +55,5 @@ def test_a_model_that_touches_nothing_is_told():
     for name, link in (("seen", visual), ("still", f"{visual}<gravity>false</gravity>")):
         simulation.spawn(model(f'<model name="{name}"><link name="link">{link}</link></model>'), name)
     simulation.spawn(model(box("crate", "0 0 2 0 0 0", "0.2 0.2 0.2")), "crate")
-    assert [each.code for each in touches_nothing(simulation, "seen")] == ["SIM143"]
-    assert touches_nothing(simulation, "still") == touches_nothing(simulation, "crate") == []
+    assert [each.code for each in collision_warnings(simulation, "seen")] == ["SIM143"]
+    assert collision_warnings(simulation, "still") == collision_warnings(simulation, "crate") == []

@@ -22,8 +22,8 @@ from linkwright.simulation.plugins.registry import (
     _OWN_SYSTEMS,
     _SENSORS_OF_SYSTEMS,
     SENSORS,
+    is_built_in,
     is_of_gz,
-    needs_nothing,
 )
 from linkwright.simulation.plugins.ros_element import node_of
 from linkwright.simulation.server.server import ServerOptions, SimulationServer
@@ -76,9 +76,9 @@ def test_all_spellings_of_a_library_are_one(filename, name):
 
 
 def test_systems_that_are_built_in_need_nothing():
-    assert needs_nothing("libignition-gazebo-physics-system.so")
-    assert needs_nothing("libgazebo_ros_factory.so")
-    assert not needs_nothing("gz-sim-diff-drive-system")
+    assert is_built_in("libignition-gazebo-physics-system.so")
+    assert is_built_in("libgazebo_ros_factory.so")
+    assert not is_built_in("gz-sim-diff-drive-system")
     assert is_of_gz("gz-sim7-diff-drive-system")
     assert not is_of_gz("libgazebo_ros_camera.so")
 

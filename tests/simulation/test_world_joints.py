@@ -7,7 +7,7 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 
-from linkwright.simulation.server.unsimulated import unsimulated
+from linkwright.simulation.server.unsimulated import unsimulated_elements
 from tests.simulation.test_loading import load, steps
 from tests.simulation.test_server import simulator
 from tests.simulation.worlds import box, simulated
@@ -125,7 +125,7 @@ def test_joints_of_a_world_follow_each_other_and_turn_by_gears():
 def test_a_sensor_in_a_joint_of_a_world_is_named_as_not_simulated():
     sensor = '<sensor name="force" type="force_torque"/>'
     simulation = simulated(box("a", "0 0 9 0 0 0"), joint("fixed", "world", "a", sensor))
-    assert unsimulated(simulation.world) == ["<sensor> in <joint> of <world>"]
+    assert unsimulated_elements(simulation.world) == ["<sensor> in <joint> of <world>"]
 
 
 async def test_what_hangs_on_a_model_goes_on_without_it(tmp_path):

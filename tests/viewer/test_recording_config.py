@@ -137,4 +137,4 @@ def test_a_robot_that_drives_about_is_followed_and_one_that_stands_is_seen_whole
     view = config.views.current.values
     assert (view["Target Frame"], view["Distance"]) == (("base", 5.0) if drives else ("<Fixed Frame>", 3.0))
     assert config.shows_whole_robot is not drives
-    assert bool(config.sizes_for(0.2)) is not drives
+    assert bool(config.take_sizes(0.2)) is not drives

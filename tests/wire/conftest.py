@@ -108,7 +108,7 @@ class Process:
 
     def close(self) -> None:
         self.executor.shutdown()
-        self.graph.close_now()
+        self.graph.close_threadsafe()
 
 
 @pytest.fixture

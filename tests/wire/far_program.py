@@ -79,4 +79,4 @@ if __name__ == "__main__":
         }
     )
     program.executor.shutdown()
-    program.graph.close_now()
+    program.graph.close_threadsafe()

@@ -70,7 +70,7 @@ def test_a_process_with_neither_says_so_and_goes_on(installed):
         )
         assert graph.create_node("alone").get_node_names() == ["alone"]
     finally:
-        graph.close_now()
+        graph.close_threadsafe()
 
 
 @pytest.mark.skipif(importlib.util.find_spec("cyclonedds") is None, reason="there is no DDS here")
@@ -94,4 +94,4 @@ def test_a_graph_joins_over_what_is_chosen(variables, kind, domain):
         assert transport.domain_id == domain
         assert transport.wait_until_ready(60)
     finally:
-        graph.close_now()
+        graph.close_threadsafe()

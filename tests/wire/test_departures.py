@@ -78,7 +78,7 @@ def test_a_participant_whose_process_is_gone_is_lost_before_its_lease_is_over(mo
     running = True
     monkeypatch.setattr("linkwright.wire.dds.remote.is_process_running", lambda _: running)
     scene = Scene(RemoteParticipant(PARTICIPANT, peer_process=7))
-    assert scene.after(0.0) == departures.LOOK_AGAIN
+    assert scene.after(0.0) == departures.POLL_SECONDS
     running = False
     scene.after(1.0)
     assert not scene.lost

@@ -10,7 +10,7 @@ import pytest
 from linkwright.graph import Graph, LogRecord
 from linkwright.messages import String
 from linkwright.wire.dds import available, join, unavailable_reason
-from linkwright.wire.dds.settings import most_participants
+from linkwright.wire.dds.settings import max_participants
 from linkwright.wire.domain_id import MAX_DOMAIN_ID
 
 with_dds = pytest.mark.skipif(not available(), reason="there is no DDS here")
@@ -25,7 +25,7 @@ def log() -> list[LogRecord]:
 def graph(log):
     graph = Graph(threads=True, on_log=log.append)
     yield graph
-    graph.close_now()
+    graph.close_threadsafe()
 
 
 def texts(log):
@@ -103,7 +103,7 @@ def test_a_wrong_range_is_told_and_stays_on_the_machine(graph, log, monkeypatch)
 @with_dds
 def test_a_domain_without_free_ports_is_told(graph, log, domain, capfd):
     with ExitStack() as taken:
-        for index in range(most_participants(domain) + 1):
+        for index in range(max_participants(domain) + 1):
             each = taken.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
             with suppress(OSError):
                 each.bind(("", 7410 + 250 * domain + 2 * index))

@@ -26,7 +26,7 @@ def looking():
     assert transport is not None
     assert transport.wait_until_ready(SECONDS)
     yield graph, transport
-    graph.close_now()
+    graph.close_threadsafe()
 
 
 @pytest.fixture
@@ -65,7 +65,7 @@ def test_where_all_are_known_it_waits_no_longer(programs, never_quiet):
     assert transport.wait_for_discovery(SECONDS)
     assert {node.name for node in transport.remote_nodes()} == {"one", "two"}
     assert graph.count_publishers("/chatter") == 0
-    graph.close_now()
+    graph.close_threadsafe()
 
 
 @on_linux
@@ -95,7 +95,7 @@ def test_beyond_the_own_machine_the_system_cannot_tell(range_name, monkeypatch):
     transport = join(graph, only_looks=True)
     assert transport is not None
     assert not transport._knows_all_processes()
-    graph.close_now()
+    graph.close_threadsafe()
 
 
 def test_neither_numpy_nor_what_it_does_not_use_of_cyclone_is_imported():

@@ -63,7 +63,7 @@ def test_nobody_joins_where_security_is_enforced():
         with pytest.raises(LinkwrightError) as caught:
             join(graph, environment=ENFORCED)
     finally:
-        graph.close_now()
+        graph.close_threadsafe()
     assert [diagnostic.code for diagnostic in caught.value.diagnostics] == ["DDS121"]
 
 
@@ -82,7 +82,7 @@ def test_graphs_that_join_log_it(monkeypatch):
     for _ in range(2):
         graph = Graph(threads=True, on_log=log.append)
         join(graph, domain_id=own_domain())
-        graph.close_now()
+        graph.close_threadsafe()
     (text,) = [record.text for record in log]
     assert text.startswith("warning[DDS123]: ROS_DISCOVERY_SERVER is set")
 

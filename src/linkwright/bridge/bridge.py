@@ -52,7 +52,7 @@ async def run_bridge(
     Raises:
         LinkwrightError: a network cannot be joined.
     """
-    sink = _relevant(log)
+    sink = _without_mirrored_nodes(log)
     first = await networks[0].join(bridge_id, sink)
     try:
         second = await networks[1].join(bridge_id, sink)
@@ -106,7 +106,7 @@ async def _carry(first: Side, second: Side, directions: tuple[Direction, Directi
             waiting.cancel()
 
 
-def _relevant(log: LogSink) -> LogSink:
+def _without_mirrored_nodes(log: LogSink) -> LogSink:
     """Return a log sink that drops the records of mirrored nodes, except errors.
 
     Mirrored nodes warn about a quality of service that they did not choose.

@@ -88,7 +88,7 @@ class Direction:
 
     def withdraw(self) -> None:
         """Decide which endpoints to mirror now, and remove the mirrors of endpoints that have left."""
-        self._decide()
+        self._select_endpoints()
         self._leaving = {
             gid: self._leaving.get(gid, 0) for gid in self._publishers.keys() - self._wanted_publishers.keys()
         }
@@ -188,7 +188,7 @@ class Direction:
         assert info.node is not None
         return self._nodes[info.node.full_name]
 
-    def _decide(self) -> None:
+    def _select_endpoints(self) -> None:
         """Decide which endpoints and nodes of the source are mirrored, and which streams are awaited."""
         seen, there = self._source.seen, self._target.seen
         self._wanted_publishers, self._wanted_services, self._wanted_nodes = {}, {}, {}

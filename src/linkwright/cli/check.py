@@ -144,9 +144,9 @@ def _contents(checked: Checked) -> str:
 
         return tree_text(checked.robot)
     if checked.sdf is not None:
-        from linkwright.sdf.listing import sdf_text
+        from linkwright.sdf.listing import list_contents
 
-        return sdf_text(checked.sdf)
+        return list_contents(checked.sdf)
     return ""
 
 

@@ -80,7 +80,7 @@ def _format_file(file: Path, arguments: argparse.Namespace, *, dry_run: bool) ->
 
 
 def _format_and_report(file: Path, arguments: argparse.Namespace, *, dry_run: bool) -> bool:
-    from linkwright.lint.apply import unified, write_text
+    from linkwright.lint.apply import unified_changes, write_text
     from linkwright.xmltree.decoding import decoded
     from linkwright.xmltree.reader import read_bytes
 
@@ -89,7 +89,7 @@ def _format_and_report(file: Path, arguments: argparse.Namespace, *, dry_run: bo
     if after == before:
         return False
     if arguments.diff:
-        sys.stdout.write(unified(display_path(file), before, after))
+        sys.stdout.write(unified_changes(display_path(file), before, after))
     elif arguments.check:
         print(localized(phrase("would format {file}", file=display_path(file))))
     if not dry_run:
@@ -98,14 +98,14 @@ def _format_and_report(file: Path, arguments: argparse.Namespace, *, dry_run: bo
 
 
 def _format_stdin(arguments: argparse.Namespace) -> int:
-    from linkwright.lint.apply import unified
+    from linkwright.lint.apply import unified_changes
     from linkwright.xmltree.decoding import decoded
 
     name = arguments.stdin_filename or "<stdin>"
     before = decoded(sys.stdin.buffer.read(), name).text
     after = _formatted(before, Path(arguments.stdin_filename or Path.cwd() / "stdin.xacro"), arguments, name)
     if arguments.diff:
-        sys.stdout.write(unified(name, before, after))
+        sys.stdout.write(unified_changes(name, before, after))
     elif not arguments.check:
         sys.stdout.buffer.write(after.encode("utf-8"))
     return _CHANGES if after != before and (arguments.check or arguments.diff) else FINE

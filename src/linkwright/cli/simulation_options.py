@@ -138,7 +138,7 @@ def _with_absolute_uris(model: Model, folder: Path, finder: PackageFinder) -> Mo
 
     The model is passed on as text, and thereby loses its folder.
     """
-    from linkwright.descriptions.conversion import with_addresses
+    from linkwright.descriptions.conversion import with_changed_uris
     from linkwright.packages import PackageFinder
     from linkwright.sdf.resources import Missing, ResourceFinder
 
@@ -150,7 +150,7 @@ def _with_absolute_uris(model: Model, folder: Path, finder: PackageFinder) -> Mo
         found = beside.file(written, written_in)
         return written if isinstance(found, Missing) else found.absolute().as_uri()
 
-    changed: Model = with_addresses(model, folder, resolved)
+    changed: Model = with_changed_uris(model, folder, resolved)
     return changed
 
 

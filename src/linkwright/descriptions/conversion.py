@@ -76,7 +76,7 @@ def as_sdf(
         if world.sdf is None:
             return Converted(None, world.diagnostics, world.files)
         sdf = replace(world.sdf, worlds=tuple(map(_as_it_is, world.sdf.worlds)))
-        return Converted(_from_folder(sdf, path.parent, folder), world.diagnostics, world.files)
+        return Converted(_relocate_paths(sdf, path.parent, folder), world.diagnostics, world.files)
     from linkwright.sdf.from_urdf import model_from_robot
     from linkwright.sdf.worlds import Sdf
     from linkwright.sdf.writer import VERSION
@@ -87,27 +87,27 @@ def as_sdf(
     conversion = model_from_robot(description.robot, lump_fixed_joints=lump_fixed_joints)
     sdf = Sdf(VERSION, models=(conversion.model,))
     found = (*description.diagnostics, *conversion.diagnostics)
-    return Converted(_from_folder(sdf, path.parent, folder), found, description.files)
+    return Converted(_relocate_paths(sdf, path.parent, folder), found, description.files)
 
 
 def _as_it_is(world: World) -> World:
     """Return a world in its saved state, with gravity in the element that SDF uses since 1.6."""
-    from linkwright.sdf.saved import as_saved
+    from linkwright.sdf.saved import with_saved_state
     from linkwright.sdf.worlds import gravity_of
 
-    world = replace(as_saved(world), states=())
+    world = replace(with_saved_state(world), states=())
     if world.gravity is None and any(physic.gravity for physic in world.physics):
         physics = tuple(replace(physic, gravity=None) for physic in world.physics)
         world = replace(world, gravity=gravity_of(world), physics=physics)
     return world
 
 
-def _from_folder(part: Any, written_in: Path, folder: Path) -> Any:
+def _relocate_paths(part: Any, written_in: Path, folder: Path) -> Any:
     """Return a part of SDF whose relative paths are relative to another folder."""
-    return with_addresses(part, written_in, lambda written, beside: _address(written, beside, folder))
+    return with_changed_uris(part, written_in, lambda written, beside: _address(written, beside, folder))
 
 
-def with_addresses(part: Any, written_in: Path, change: Callable[[str, Path], str]) -> Any:
+def with_changed_uris(part: Any, written_in: Path, change: Callable[[str, Path], str]) -> Any:
     """Return a part of SDF with changed URIs of meshes, textures and other files.
 
     Args:
@@ -116,7 +116,7 @@ def with_addresses(part: Any, written_in: Path, change: Callable[[str, Path], st
         change: a function that returns the new URI, given a URI and the folder of the file that contains it.
     """
     if isinstance(part, tuple):
-        return tuple(with_addresses(item, written_in, change) for item in part)
+        return tuple(with_changed_uris(item, written_in, change) for item in part)
     if not is_dataclass(part) or isinstance(part, type):
         return part
     source = getattr(getattr(part, "element", None), "source", None)
@@ -131,7 +131,7 @@ def with_addresses(part: Any, written_in: Path, change: Callable[[str, Path], st
             moved = tuple(change(item, written_in) for item in (value if many else (value,)))
             new = moved if many else moved[0]
         else:
-            new = with_addresses(value, written_in, change)
+            new = with_changed_uris(value, written_in, change)
         if new != value:
             changed[field.name] = new
     return replace(part, **changed) if changed else part

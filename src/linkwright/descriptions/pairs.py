@@ -59,9 +59,9 @@ class Model:
         try:
             found = examine(self.path, arguments=self.values, packages=self.finder)
         except LinkwrightError as error:
-            raise LinkwrightError(*map(self._relabelled, error.diagnostics)) from None
+            raise LinkwrightError(*map(self._relabel, error.diagnostics)) from None
         if found.robot is None:
-            raise LinkwrightError(*map(self._relabelled, found.diagnostics))
+            raise LinkwrightError(*map(self._relabel, found.diagnostics))
         return found
 
     def read_robot(self) -> Robot:
@@ -78,7 +78,7 @@ class Model:
         """
         return self.finder.resolve(address, self.path.parent)
 
-    def _relabelled(self, diagnostic: Diagnostic) -> Diagnostic:
+    def _relabel(self, diagnostic: Diagnostic) -> Diagnostic:
         """Return a finding in which files of a commit have the names that git uses."""
         if self.revision is None:
             return diagnostic

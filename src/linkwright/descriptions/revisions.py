@@ -52,7 +52,7 @@ class Revision:
         commit = _commit(self._top, name)
         inside = real.relative_to(self._top)
         if _git(self._top, "cat-file", "-e", f"{commit}:{inside.as_posix()}").returncode != 0:
-            inside = _before_renaming(self._top, commit, inside, name)
+            inside = _path_before_rename(self._top, commit, inside, name)
         self._folder = ScratchFolder("revision")
         self._root = Path(self._folder.name).resolve() / "files"
         try:
@@ -94,7 +94,7 @@ class Revision:
             finder: the finder of the other description's packages.
         """
         theirs = {name: share for name in self._packages if (share := finder.find(name)) is not None}
-        return _replacing(self._packages, self._root), _replacing(theirs, self._top)
+        return _path_normalizer(self._packages, self._root), _path_normalizer(theirs, self._top)
 
     def _write(self, commit: str) -> None:
         index = {"GIT_INDEX_FILE": str(self._root.parent / "index")}
@@ -136,7 +136,7 @@ def _commit(top: Path, name: str) -> str:
     return done.stdout.strip()
 
 
-def _before_renaming(top: Path, commit: str, inside: Path, name: str) -> Path:
+def _path_before_rename(top: Path, commit: str, inside: Path, name: str) -> Path:
     """Return the path that a file of the working tree had in a commit, before it was renamed.
 
     The renaming need not be staged.
@@ -186,7 +186,7 @@ def _git(folder: Path, *words: str, environment: Mapping[str, str] | None = None
         raise LinkwrightError(Diagnostic("CLI341", phrase("there is no program git"), hint=hint)) from None
 
 
-def _replacing(shares: Mapping[str, Path], top: Path) -> Callable[[str], str]:
+def _path_normalizer(shares: Mapping[str, Path], top: Path) -> Callable[[str], str]:
     known: Sequence[tuple[str, str]] = [
         *((str(share), f"package://{name}") for name, share in shares.items()),
         (str(top), "."),

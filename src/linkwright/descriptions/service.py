@@ -260,7 +260,7 @@ def examine_world(
     from linkwright.sdf.references import check_references
     from linkwright.sdf.resources import ResourceFinder
     from linkwright.sdf.scripts import with_scripts
-    from linkwright.sdf.worlds import populated
+    from linkwright.sdf.worlds import with_populations
 
     path = Path(path)
     finder = (
@@ -276,8 +276,8 @@ def examine_world(
     resources = ResourceFinder(finder, environment)
     included = resolve_includes(reading.sdf, path, resources)
     found += [*included.diagnostics, *check_references(included.sdf)]
-    sdf = with_scripts(replace(included.sdf, worlds=tuple(map(populated, included.sdf.worlds))), resources)
-    return WorldDescription(path, sdf, tuple(_each_once(found)), (*files, *included.files))
+    sdf = with_scripts(replace(included.sdf, worlds=tuple(map(with_populations, included.sdf.worlds))), resources)
+    return WorldDescription(path, sdf, tuple(_without_repetitions(found)), (*files, *included.files))
 
 
 def robot_of_text(text: str, name: str) -> Reading:
@@ -303,7 +303,7 @@ def robot_of_text(text: str, name: str) -> Reading:
     return robot_from_sdf(resolve_includes(reading.sdf, Path(name), resources).sdf, document.root)
 
 
-def _each_once(found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
+def _without_repetitions(found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
     """Yield the findings without repetitions about unread elements and missing models.
 
     Of these, only the first with the same message is yielded.
@@ -420,7 +420,7 @@ def examine(
         if document.root.tag == "sdf" and document.source is not None:
             return Description(name, document, robot_of_text(document.source.text, name), overlay=overlay)
         if xacro is False or not (arguments or is_xacro(name, document.root)):
-            return _as_it_stands(name, document, forbidden, overlay)
+            return _unexpanded_description(name, document, forbidden, overlay)
         text = document.source.text if given_text and document.source else text
     from linkwright.xacro import expand
 
@@ -434,7 +434,9 @@ def examine(
             unexpanded = tuple(
                 _as_warning(diagnostic) for diagnostic in error.diagnostics if diagnostic.code not in reported
             )
-            plain = _as_it_stands(name, document, (*unexpanded, *forbidden), overlay, is_reported=bool(unexpanded))
+            plain = _unexpanded_description(
+                name, document, (*unexpanded, *forbidden), overlay, is_reported=bool(unexpanded)
+            )
             if plain.robot is not None and not has_errors(plain.diagnostics) and not _has_open_names(plain.robot):
                 return plain
         from linkwright.xacro.parts import expand_parts
@@ -444,7 +446,7 @@ def examine(
     return Description.of_expansion(name, expansion, overlay)
 
 
-def _as_it_stands(
+def _unexpanded_description(
     name: str,
     document: Document,
     remarks: tuple[Diagnostic, ...],

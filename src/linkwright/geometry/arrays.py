@@ -23,7 +23,7 @@ _PARALLEL = 0.9995
 """Quaternions whose dot product is larger than this are mixed in a straight line."""
 
 
-def last_axis(values: ArrayLike, length: int, what: str) -> Array:
+def as_array(values: ArrayLike, length: int, what: str) -> Array:
     """Convert values to a float64 array, after checking the length of the last axis.
 
     `what` names the values in the error.
@@ -46,7 +46,7 @@ def quaternion_from_rpy(rpy: ArrayLike) -> Array:
     Returns:
         Shape (..., 4).
     """
-    half = last_axis(rpy, 3, "roll, pitch and yaw") / 2
+    half = as_array(rpy, 3, "roll, pitch and yaw") / 2
     sin_roll, sin_pitch, sin_yaw = np.moveaxis(np.sin(half), -1, 0)
     cos_roll, cos_pitch, cos_yaw = np.moveaxis(np.cos(half), -1, 0)
     return np.stack(
@@ -70,7 +70,7 @@ def quaternion_multiply(first: ArrayLike, second: ArrayLike) -> Array:
     Returns:
         Shape (..., 4).
     """
-    a, b = last_axis(first, 4, "a quaternion"), last_axis(second, 4, "a quaternion")
+    a, b = as_array(first, 4, "a quaternion"), as_array(second, 4, "a quaternion")
     ax, ay, az, aw = a[..., 0], a[..., 1], a[..., 2], a[..., 3]
     bx, by, bz, bw = b[..., 0], b[..., 1], b[..., 2], b[..., 3]
     product = np.empty(np.broadcast_shapes(a.shape, b.shape))
@@ -83,7 +83,7 @@ def quaternion_multiply(first: ArrayLike, second: ArrayLike) -> Array:
 
 def quaternion_inverse(quaternion: ArrayLike) -> Array:
     """Return the inverse rotation; shape (..., 4) to (..., 4)."""
-    inverse: Array = last_axis(quaternion, 4, "a quaternion") * np.array((-1.0, -1.0, -1.0, 1.0))
+    inverse: Array = as_array(quaternion, 4, "a quaternion") * np.array((-1.0, -1.0, -1.0, 1.0))
     return inverse
 
 
@@ -97,7 +97,7 @@ def rotate(quaternion: ArrayLike, vector: ArrayLike) -> Array:
     Returns:
         Shape (..., 3).
     """
-    q, v = last_axis(quaternion, 4, "a quaternion"), last_axis(vector, 3, "a vector")
+    q, v = as_array(quaternion, 4, "a quaternion"), as_array(vector, 3, "a vector")
     x, y, z, w = q[..., 0], q[..., 1], q[..., 2], q[..., 3]
     vx, vy, vz = v[..., 0], v[..., 1], v[..., 2]
     # v + 2 w (u x v) + 2 u x (u x v), where u is the vector part of the quaternion.
@@ -120,7 +120,7 @@ def slerp(first: ArrayLike, last: ArrayLike, ratios: ArrayLike) -> Array:
     Returns:
         Shape (n, 4).
     """
-    begin, end = last_axis(first, 4, "a quaternion"), last_axis(last, 4, "a quaternion")
+    begin, end = as_array(first, 4, "a quaternion"), as_array(last, 4, "a quaternion")
     parts = np.asarray(ratios)[:, np.newaxis]
     dot = float(np.dot(begin, end))
     if dot < 0.0:
@@ -136,7 +136,7 @@ def slerp(first: ArrayLike, last: ArrayLike, ratios: ArrayLike) -> Array:
 
 def rotation_matrix(quaternion: ArrayLike) -> Array:
     """Convert rotations to matrices; shape (..., 4) to (..., 3, 3)."""
-    x, y, z, w = np.moveaxis(last_axis(quaternion, 4, "a quaternion"), -1, 0)
+    x, y, z, w = np.moveaxis(as_array(quaternion, 4, "a quaternion"), -1, 0)
     matrix = np.empty((*x.shape, 3, 3))
     matrix[..., 0, 0] = 1 - 2 * (y * y + z * z)
     matrix[..., 0, 1] = 2 * (x * y - w * z)
@@ -186,7 +186,7 @@ def compose(b_in_a: ArrayLike, c_in_b: ArrayLike) -> Array:
     Returns:
         Shape (..., 7).
     """
-    a, b = last_axis(b_in_a, 7, "a pose"), last_axis(c_in_b, 7, "a pose")
+    a, b = as_array(b_in_a, 7, "a pose"), as_array(c_in_b, 7, "a pose")
     pose = np.empty(np.broadcast_shapes(a.shape, b.shape))
     pose[..., :3] = a[..., :3] + rotate(a[..., 3:], b[..., :3])
     pose[..., 3:] = quaternion_multiply(a[..., 3:], b[..., 3:])
@@ -195,7 +195,7 @@ def compose(b_in_a: ArrayLike, c_in_b: ArrayLike) -> Array:
 
 def invert(b_in_a: ArrayLike) -> Array:
     """Return the poses of frame A in frame B, given B in A; shape (..., 7) to (..., 7)."""
-    given = last_axis(b_in_a, 7, "a pose")
+    given = as_array(b_in_a, 7, "a pose")
     back = quaternion_inverse(given[..., 3:])
     return np.concatenate((-rotate(back, given[..., :3]), back), axis=-1)
 
@@ -207,7 +207,7 @@ def row_from_pose(pose: Pose) -> Array:
 
 def matrix_from_pose(pose: ArrayLike) -> Array:
     """Convert poses to homogeneous matrices; shape (..., 7) to (..., 4, 4)."""
-    given = last_axis(pose, 7, "a pose")
+    given = as_array(pose, 7, "a pose")
     matrix = np.zeros((*given.shape[:-1], 4, 4))
     matrix[..., :3, :3] = rotation_matrix(given[..., 3:])
     matrix[..., :3, 3] = given[..., :3]

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.geometry.arrays import Array
-from linkwright.geometry.collada_scene import ColladaFile, Limits, Unusual, read_scene
+from linkwright.geometry.collada_scene import ColladaFile, Limits, UnsupportedContent, read_scene
 from linkwright.geometry.plain import PlainMesh, fans, parse_numbers
 from linkwright.geometry.polyhedron import Faces
 
@@ -41,10 +41,10 @@ class Arrays:
             counts = np.array([len(row) for row in rows])
         indices = np.concatenate(rows)
         if counts.sum() != len(indices) or (len(counts) and counts.min() < 3):
-            raise Unusual
+            raise UnsupportedContent
         for offset, limit in limits:
             if len(indices) and not 0 <= indices[:, offset].min() <= indices[:, offset].max() < limit:
-                raise Unusual
+                raise UnsupportedContent
         return fans(indices[:, column], counts)
 
     def mesh(self, text: str, faces: list[Faces]) -> PlainMesh:
@@ -69,7 +69,7 @@ def _transform(tag: str, values: Array) -> Array:
         matrix[:3, :3] = (1 - cosine) * np.outer(axis, axis) + cosine * np.eye(3) + sine * cross
         return matrix
     if len(values) != 3:
-        raise Unusual
+        raise UnsupportedContent
     if tag == "translate":
         matrix[:3, 3] = values
     else:

@@ -9,7 +9,7 @@ import math
 from itertools import pairwise
 from struct import error, pack, unpack
 
-from linkwright.geometry.collada_scene import ColladaFile, Limits, Unusual, read_scene
+from linkwright.geometry.collada_scene import ColladaFile, Limits, UnsupportedContent, read_scene
 from linkwright.geometry.single import Vector3
 
 _Rows = list[list[float]]
@@ -67,10 +67,10 @@ class Lists:
         elif tag == "polylist":
             counts = _integers(counted)
         if any(len(row) % width for row in rows) or sum(counts) * width != len(indices) or min(counts, default=3) < 3:
-            raise Unusual
+            raise UnsupportedContent
         for offset, limit in limits:
             if indices and not 0 <= min(indices[offset::width]) <= max(indices[offset::width]) < limit:
-                raise Unusual
+                raise UnsupportedContent
         corners = iter(indices[column::width])
         found = []
         for count in counts:
@@ -88,20 +88,20 @@ class Lists:
 def _numbers(text: str) -> list[float]:
     """Parse numbers separated by whitespace, rounded to 32 bits."""
     if "_" in text:
-        raise Unusual
+        raise UnsupportedContent
     words = text.split()
     try:
         found = unpack(f"{len(words)}f", pack(f"{len(words)}f", *map(float, words)))
     except (OverflowError, error):
-        raise Unusual from None
+        raise UnsupportedContent from None
     if not all(map(math.isfinite, found)):
-        raise Unusual
+        raise UnsupportedContent
     return list(found)
 
 
 def _integers(text: str) -> list[int]:
     if "_" in text:
-        raise Unusual
+        raise UnsupportedContent
     return list(map(int, text.split()))
 
 
@@ -109,7 +109,7 @@ def _transform(tag: str, values: list[float], matrix: _Rows) -> _Rows:
     """Write the matrix of a transform element into an identity matrix, and return it."""
     if tag == "matrix":
         if len(values) != 16:
-            raise Unusual
+            raise UnsupportedContent
         return [values[start : start + 4] for start in range(0, 16, 4)]
     if tag == "rotate":
         x, y, z, degrees = values
@@ -121,7 +121,7 @@ def _transform(tag: str, values: list[float], matrix: _Rows) -> _Rows:
                 matrix[row][column] = (1 - cosine) * (first * second) + own + sine * cross[row][column]
         return matrix
     if len(values) != 3:
-        raise Unusual
+        raise UnsupportedContent
     for axis, value in enumerate(values):
         matrix[axis][3 if tag == "translate" else axis] = value
     return matrix

@@ -32,14 +32,14 @@ MadeT_co = TypeVar("MadeT_co", covariant=True)
 MatrixT = TypeVar("MatrixT")
 
 
-class Unusual(Exception):  # noqa: N818 - no error: another reader takes the file
+class UnsupportedContent(Exception):  # noqa: N818 - no error: another reader takes the file
     """Raised when a file has content that a simple reader does not support."""
 
 
 class Numbers(Protocol[MadeT_co, MatrixT, FacesT]):
     """The interface that creates meshes and matrices from the text of elements.
 
-    Each method raises `Unusual` or ValueError for text that it does not support.
+    Each method raises `UnsupportedContent` or ValueError for text that it does not support.
     """
 
     def identity(self) -> MatrixT:
@@ -101,7 +101,7 @@ def read_scene(data: bytes, numbers: Numbers[MeshT, MatrixT, Any]) -> ColladaFil
         return None
     try:
         return _File(ET.fromstring(data), numbers).read()  # noqa: S314 - there are no entities in it
-    except (Unusual, ET.ParseError, ValueError, LookupError, RecursionError):
+    except (UnsupportedContent, ET.ParseError, ValueError, LookupError, RecursionError):
         return None
 
 
@@ -109,7 +109,7 @@ class _File(Generic[MeshT, MatrixT]):
     def __init__(self, root: _Node, numbers: Numbers[MeshT, MatrixT, Any]) -> None:
         name, brace, _ = root.tag.rpartition("}")
         if not brace:
-            raise Unusual
+            raise UnsupportedContent
         self._root = root
         self._numbers = numbers
         self._space = name + brace
@@ -124,7 +124,7 @@ class _File(Generic[MeshT, MatrixT]):
         root = self._numbers.identity()
         placed = [item for node in self._all(scene, "node") for item in self._placed(node, root)]
         if not placed:
-            raise Unusual
+            raise UnsupportedContent
         return ColladaFile(self._unit(), placed)
 
     # --- tree -------------------------------------------------------------------------------------------------
@@ -135,7 +135,7 @@ class _File(Generic[MeshT, MatrixT]):
     def _only(self, node: _Node, tag: str) -> _Node:
         found = self._all(node, tag)
         if len(found) != 1:
-            raise Unusual
+            raise UnsupportedContent
         return found[0]
 
     def _by_id(self, library: str, tag: str) -> dict[str, _Node]:
@@ -144,13 +144,13 @@ class _File(Generic[MeshT, MatrixT]):
             for node in self._all(element, tag):
                 name = node.get("id", "")
                 if not name or name in found:
-                    raise Unusual
+                    raise UnsupportedContent
                 found[name] = node
         return found
 
     def _tag(self, node: _Node) -> str:
         if not node.tag.startswith(self._space):
-            raise Unusual
+            raise UnsupportedContent
         return node.tag[len(self._space) :]
 
     def _unit(self) -> float:
@@ -166,7 +166,7 @@ class _File(Generic[MeshT, MatrixT]):
         """Iterate over the meshes in a node, with their frames as matrices in the file's frame."""
         self._places += 1
         if self._places > _MOST_PLACES:
-            raise Unusual
+            raise UnsupportedContent
         matrix = above
         for part in node:
             if (tag := self._tag(part)) in _TRANSFORMS:
@@ -182,7 +182,7 @@ class _File(Generic[MeshT, MatrixT]):
                 if has_faces:
                     yield mesh, matrix
             elif tag not in _TRANSFORMS and tag not in _WITHOUT_TRIANGLES:
-                raise Unusual
+                raise UnsupportedContent
 
     # --- meshes -----------------------------------------------------------------------------------------------
 
@@ -200,7 +200,7 @@ class _File(Generic[MeshT, MatrixT]):
         }
         corners = inputs["POSITION"]
         if corners.width != 3:
-            raise Unusual
+            raise UnsupportedContent
         name = f"#{vertices.get('id', '')}"
         rows = {name: corners.rows, **{source: each.rows for source, each in sources.items()}}
         parts = [part for part in mesh if self._tag(part) not in _NO_FACES]
@@ -215,7 +215,7 @@ class _File(Generic[MeshT, MatrixT]):
         count = len(text.split())
         stride, offset = int(accessor.get("stride", "1")), int(accessor.get("offset", "0"))
         if stride != width or offset or count != int(numbers_of.get("count", "-1")) or count % width:
-            raise Unusual
+            raise UnsupportedContent
         return _Source(count // width, width, text)
 
     def _faces(self, part: _Node, tag: str, rows: dict[str, int], corners: str) -> Any:
@@ -228,7 +228,7 @@ class _File(Generic[MeshT, MatrixT]):
         texts = [element.text or "" for element in self._all(part, "p")]
         is_polygons = tag == "polygons" and texts and not self._all(part, "ph")
         if not is_polygons and (tag not in ("triangles", "polylist") or len(texts) != 1):
-            raise Unusual
+            raise UnsupportedContent
         counted = (self._only(part, "vcount").text or "") if tag == "polylist" else ""
         (column,) = [offset for semantic, source, offset in inputs if semantic == "VERTEX" and source == corners]
         limits = [(offset, rows[source]) for _, source, offset in inputs]
@@ -239,5 +239,5 @@ def _reference(node: _Node) -> str:
     """Return the ID in a node's ``url``, which refers to an element of the same file."""
     mark, _, name = node.get("url", "").partition("#")
     if mark or not name:
-        raise Unusual
+        raise UnsupportedContent
     return name

@@ -59,7 +59,7 @@ def convex_pieces(vertices: Array, faces: Faces, most: int) -> list[Array]:
     return pieces
 
 
-def thickened(corners: Array) -> Array:
+def thicken(corners: Array) -> Array:
     """Return the corners of a convex piece, thickened on both sides if they are nearly coplanar."""
     middle = corners.mean(axis=0)
     _, sizes, axes = np.linalg.svd(corners - middle, full_matrices=False)

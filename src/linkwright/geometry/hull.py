@@ -67,10 +67,10 @@ class _Hull:
             normal, level = self.planes[face]
             apex = int(candidates[np.argmax(self.points[candidates] @ normal - level)])
             self.outside[face] = candidates
-            self._take_in(face, apex)
+            self._add_point(face, apex)
         return np.array(list(self.faces.values()), dtype=np.int64)
 
-    def _take_in(self, face: int, apex: int) -> None:
+    def _add_point(self, face: int, apex: int) -> None:
         seen, rim = self._seen_from(face, self.points[apex])
         loose = [self._remove(value) for value in seen]
         left = np.concatenate(loose)

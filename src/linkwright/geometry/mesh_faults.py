@@ -29,7 +29,7 @@ _PARTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "M
 _NUMBERS_OF = {"matrix": 16, "translate": 3, "scale": 3, "rotate": 4}
 
 
-def fault_in(data: bytes, kind: str) -> Phrase | None:
+def find_fault(data: bytes, kind: str) -> Phrase | None:
     """Return a description of the first fault of a mesh file, or None if none is found.
 
     Args:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from linkwright.diagnostics import LinkwrightError, Phrase, foreign, phrase
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.collada import read_collada
-from linkwright.geometry.mesh_faults import fault_in
+from linkwright.geometry.mesh_faults import find_fault
 from linkwright.geometry.outlines import STL_HEADER, STL_TRIANGLE
 from linkwright.geometry.stl import read_stl
 from linkwright.geometry.wavefront import read_obj
@@ -94,16 +94,16 @@ def placed_meshes(data: bytes, kind: str, *, is_plain: bool = False, **options: 
     except ModuleNotFoundError:
         raise
     except Exception as error:  # noqa: BLE001 - a parser of foreign bytes may raise anything
-        repaired = _well_formed(data) if kind == "dae" else None
+        repaired = _repair_xml(data) if kind == "dae" else None
         if repaired is not None:
             return placed_meshes(repaired, kind, is_plain=is_plain, **options)
-        raise BadMeshError(fault_in(data, kind) or parser_fault(error)) from None
+        raise BadMeshError(find_fault(data, kind) or parser_fault(error)) from None
     if not found:
-        raise BadMeshError(fault_in(data, kind) or phrase("it has no triangles"))
+        raise BadMeshError(find_fault(data, kind) or phrase("it has no triangles"))
     for placed in found:
         vertices = placed.mesh.vertices
         if np.shape(vertices)[1] != 3 or not (np.isfinite(vertices).all() and np.isfinite(placed.matrix).all()):
-            raise BadMeshError(fault_in(data, kind) or phrase("a coordinate is not a finite number"))
+            raise BadMeshError(find_fault(data, kind) or phrase("a coordinate is not a finite number"))
         corner, count = int(placed.mesh.faces.max()), len(vertices)
         if corner >= count:
             raise BadMeshError(
@@ -181,7 +181,7 @@ def _collada_scene(data: bytes, **options: Any) -> Any:
         return _scene(_without_broken_materials(data), "dae", ignore_broken=True, **options)
 
 
-def _well_formed(data: bytes) -> bytes | None:
+def _repair_xml(data: bytes) -> bytes | None:
     """Return a COLLADA file with mistakes that Gazebo and RViz tolerate as well-formed XML.
 
     Returns None if the file has no such mistakes, or others. Exporters write such files: assimp names the nodes of an

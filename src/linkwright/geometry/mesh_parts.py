@@ -46,7 +46,7 @@ _UPRIGHT = np.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
 
 
 @dataclass(frozen=True, slots=True)
-class OwnLook:
+class FileMaterial:
     """A material from the mesh file.
 
     Attributes:
@@ -69,7 +69,7 @@ class MeshPart:
     """
 
     triangles: Triangles
-    own: OwnLook | None
+    own: FileMaterial | None
     names: frozenset[str] = frozenset()
 
     def moved(self, offset: Array) -> MeshPart:
@@ -146,20 +146,20 @@ def _vertex_colors(mesh: Any, count: int) -> Array | None:
     return colors if colors.shape == (count, 4) else None
 
 
-def _own(mesh: Any, kind: str) -> OwnLook | None:
+def _own(mesh: Any, kind: str) -> FileMaterial | None:
     if kind == "stl":
         return None
     if mesh.visual.kind == "vertex":
-        return OwnLook((1.0, 1.0, 1.0)) if kind != "dae" else None
+        return FileMaterial((1.0, 1.0, 1.0)) if kind != "dae" else None
     material = getattr(mesh.visual, "material", None)
     if material is None:
-        return OwnLook((1.0, 1.0, 1.0)) if kind in ("glb", "gltf") else None  # glTF's default is white.
+        return FileMaterial((1.0, 1.0, 1.0)) if kind in ("glb", "gltf") else None  # glTF's default is white.
     if kind == "obj":
         color = material.kwargs.get("kd", np.asarray(material.diffuse[:3]) / 255.0)
-        return OwnLook(_rgb(color), _png(getattr(material, "image", None)))
+        return FileMaterial(_rgb(color), _png(getattr(material, "image", None)))
     factor = material.baseColorFactor
     color = np.ones(3) if factor is None else np.asarray(factor, dtype=np.float64)[:3] / 255.0
-    return OwnLook(_rgb(color), _png(material.baseColorTexture))
+    return FileMaterial(_rgb(color), _png(material.baseColorTexture))
 
 
 def _rgb(color: Any) -> tuple[float, float, float]:

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from linkwright.geometry.arrays import Array
-from linkwright.geometry.collada_scene import Unusual
+from linkwright.geometry.collada_scene import UnsupportedContent
 from linkwright.geometry.polyhedron import Faces
 from linkwright.loading.lean_typing import Any
 
@@ -43,9 +43,9 @@ def parse_numbers(text: str | None, kind: type[Any]) -> Any:
         try:
             found = np.fromstring((text or "").strip(), dtype=kind, sep=" ")
         except (DeprecationWarning, ValueError):
-            raise Unusual from None
+            raise UnsupportedContent from None
     if kind is np.float32 and not np.isfinite(found).all():
-        raise Unusual
+        raise UnsupportedContent
     return found
 
 

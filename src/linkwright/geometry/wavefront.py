@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from linkwright.geometry.collada_scene import Unusual
+from linkwright.geometry.collada_scene import UnsupportedContent
 from linkwright.geometry.plain import PlainMesh, fans, parse_numbers
 from linkwright.geometry.polyhedron import Faces
 from linkwright.loading.deferred import lazy_pattern
@@ -28,20 +28,20 @@ def read_obj(data: bytes) -> PlainMesh | None:
     polygons = [line[2:] for line in lines if line.startswith(b"f ")]
     try:
         return _mesh(vertices, polygons)
-    except (Unusual, ValueError):
+    except (UnsupportedContent, ValueError):
         return None
 
 
 def _mesh(vertices: list[bytes], polygons: list[bytes]) -> PlainMesh:
     if not vertices or not polygons:
-        raise Unusual
+        raise UnsupportedContent
     width = len(vertices[0].split())
     if width < 3 or any(len(line.split()) != width for line in vertices):
-        raise Unusual
+        raise UnsupportedContent
     points = parse_numbers(b" ".join(vertices).decode(), np.float64).reshape(-1, width)[:, :3]
     faces = _faces(polygons)
     if faces.min() < 0 or faces.max() >= len(points):
-        raise Unusual
+        raise UnsupportedContent
     return PlainMesh(points, faces)
 
 
@@ -49,5 +49,5 @@ def _faces(polygons: list[bytes]) -> Faces:
     counts = np.array([len(line.split()) for line in polygons])
     corners = parse_numbers(_OF_TEXTURES.sub(b"", b" ".join(polygons)).decode(), np.int64)
     if counts.min() < 3 or counts.sum() != len(corners):
-        raise Unusual
+        raise UnsupportedContent
     return fans(corners - 1, counts)

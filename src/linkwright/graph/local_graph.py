@@ -130,7 +130,7 @@ class LocalGraph(GraphQueries):
             self._taken_names[full_name] += 1
             if self._transport is not None and not stays_inside:
                 self._transport.open_node(identity)
-        self._outside_changed()
+        self._on_outside_change()
         return node
 
     def get_logger(self, name: str) -> Logger:
@@ -162,9 +162,9 @@ class LocalGraph(GraphQueries):
                 if not endpoint.node.stays_inside:
                     _open(transport, endpoint)
             if self._watches_lost:
-                transport.watch_lost(self._lost_outside)
-        transport.watch(self._outside_changed)
-        self._outside_changed()
+                transport.watch_lost(self._on_lost_publisher)
+        transport.watch(self._on_outside_change)
+        self._on_outside_change()
 
     def detach(self) -> None:
         """Close the transport, if there is one. Endpoints inside the process stay connected."""
@@ -198,7 +198,7 @@ class LocalGraph(GraphQueries):
             if not self._watches_lost:
                 self._watches_lost = True
                 if self._transport is not None:
-                    self._transport.watch_lost(self._lost_outside)
+                    self._transport.watch_lost(self._on_lost_publisher)
 
     def forget(self, node: NodeHandle) -> None:
         """Remove a node that was destroyed."""
@@ -232,21 +232,21 @@ class LocalGraph(GraphQueries):
         if self._dispatcher is not None:
             await self._dispatcher.join()
 
-    def close_now(self) -> None:
+    def close_threadsafe(self) -> None:
         """Destroy every node, from any thread except the thread of an event loop; see `close`."""
         transport = self._end()
         if transport is not None:
             transport.close()
 
-    def _outside_changed(self) -> None:
+    def _on_outside_change(self) -> None:
         transport = self._transport
         if transport is not None:
             self._namesakes.review(self.nodes(), transport.remote_nodes())
         self.notify_change()
 
-    def _lost_outside(self, publisher: EndpointInfo) -> None:
+    def _on_lost_publisher(self, publisher: EndpointInfo) -> None:
         for subscription in self.bus.subscriptions(publisher.name):
-            subscription.publisher_lost(publisher)
+            subscription.queue_lost_publisher(publisher)
 
     def _end(self) -> Transport | None:
         for node in tuple(self._nodes):

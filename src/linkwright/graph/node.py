@@ -10,7 +10,7 @@ from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.endpoints.service import EVENT_TOPIC_SUFFIX, Client, Service
 from linkwright.graph.endpoints.subscription import Subscription
 from linkwright.graph.introspection.node_queries import PARAMETER as TYPE_DESCRIPTIONS
-from linkwright.graph.introspection.node_queries import NodeQueries, TypeDescriptions, is_enabled_by_default
+from linkwright.graph.introspection.node_queries import NodeQueries, TypeDescriptions, has_type_descriptions_by_default
 from linkwright.graph.local_graph import LocalGraph
 from linkwright.graph.log.console import LOG_TYPE, ROSOUT_TOPIC, Rosout
 from linkwright.graph.log.logger import Logger
@@ -139,7 +139,7 @@ class Node(NodeParameters, NodeQueries):
 
         A parameter of the node decides. If the parameter is not set, the distribution's default applies.
         """
-        if TYPE_DESCRIPTIONS not in store.overrides and not is_enabled_by_default():
+        if TYPE_DESCRIPTIONS not in store.overrides and not has_type_descriptions_by_default():
             return False
         return self.__own(TYPE_DESCRIPTIONS, True, "Start the ~/get_type_description service for this node.")
 

@@ -144,7 +144,7 @@ class LaunchLog:
         line = f"[{process}] {console_line(record)}"
         if SCREEN in destinations:
             colour = {"WARN": "33", "ERROR": "31", "FATAL": "31"}.get(record.level.name)
-            self._print(2, self._painted(line, colour))
+            self._print(2, self._paint(line, colour))
         self._file(process, 2, line, destinations)
 
     def process_line(self, process: str, stream: int, line: str, destinations: frozenset[str]) -> None:
@@ -169,7 +169,7 @@ class LaunchLog:
         self._files.clear()
 
     def _own_line(self, level: str, name: str, text: str) -> None:
-        self._print(2, self._painted(self._screen_line(level, name, text), _LEVEL_COLOURS.get(level)))
+        self._print(2, self._paint(self._screen_line(level, name, text), _LEVEL_COLOURS.get(level)))
         self._write(LAUNCH_LOG, self._file_line(level, name, text))
 
     def _file(self, process: str, stream: int, line: str, destinations: frozenset[str]) -> None:
@@ -184,7 +184,7 @@ class LaunchLog:
         with suppress(OSError):  # the reader (such as head) may have exited, or the disk be full
             print(line, file=self._streams[stream], flush=True)
 
-    def _painted(self, line: str, colour: str | None) -> str:
+    def _paint(self, line: str, colour: str | None) -> str:
         return f"\x1b[{colour}m{line}\x1b[0m" if colour and self._colour else line
 
     def _write(self, name: str, line: str) -> None:

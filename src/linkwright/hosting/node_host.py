@@ -186,15 +186,15 @@ class NodeHost:
         session.log.info_line(plan.process_name, "started in the launcher's process")
         options = plan.node_options(session.descriptions.library)
         try:
-            with self._speak_as(plan.process_name), self._holding_back():
+            with self._attribute_records(plan.process_name), self._hide_fatal_records():
                 running = EXECUTABLES[(plan.package, plan.executable)](self.graph, options)
         except LinkwrightError as error:
-            self._not_started(plan, error)
+            self._handle_start_failure(plan, error)
             return
         self._running[plan.process_name] = plan, running
         self._register(plan.process_name, running, plan.parameters)
         if isinstance(running, LoadingNode):
-            running.loading = lambda: self._speak_as(plan.process_name)
+            running.loading = lambda: self._attribute_records(plan.process_name)
             running.on_loaded.append(lambda loaded, given: self._register(plan.process_name, loaded, given.parameters))
         session.node_started(plan)
         if isinstance(running, FinishingNode):
@@ -209,7 +209,7 @@ class NodeHost:
             running.follow_files(FollowedFiles(self._session.reload, self._session.spawn, lambda: self.launcher_node))
         self._viewers.attach_panel(running)
 
-    def _not_started(self, plan: HostedPlan, error: LinkwrightError) -> None:
+    def _handle_start_failure(self, plan: HostedPlan, error: LinkwrightError) -> None:
         """Log why a node could not start.
 
         A node whose model file is not valid is started as soon as the file is fixed.
@@ -253,7 +253,7 @@ class NodeHost:
 
         if running.node.handle.is_destroyed:
             return
-        with self._speak_as(process_name):
+        with self._attribute_records(process_name):
             result = running.node.set_parameters([Parameter(name, value=text)])[0]
         if not result.successful:
             raise LinkwrightError(
@@ -305,7 +305,7 @@ class NodeHost:
         session = self._session
         nodes = [running for _, running in self._running.values()]
         try:
-            with self._speak_as(plan.process_name):
+            with self._attribute_records(plan.process_name):
                 await self._viewers.start(plan, self.graph, nodes, with_world=with_world)
         except LinkwrightError as error:
             session.fail(plan)
@@ -345,7 +345,7 @@ class NodeHost:
         self._session.log.node_record(process, record, self._destinations.get(process, _ON_SCREEN))
 
     @contextmanager
-    def _holding_back(self) -> Iterator[None]:
+    def _hide_fatal_records(self) -> Iterator[None]:
         """Keep the fatal log records of a node that fails to start off the screen, in a ``with`` block.
 
         The node's diagnostics report the errors, with their source positions.
@@ -363,7 +363,7 @@ class NodeHost:
                 self._session.log.node_record(process, record, destinations - {SCREEN} if off_screen else destinations)
 
     @contextmanager
-    def _speak_as(self, process_name: str) -> Iterator[None]:
+    def _attribute_records(self, process_name: str) -> Iterator[None]:
         """Attribute the records of unknown loggers to a process inside a ``with`` block."""
         before, self._speaking = self._speaking, process_name
         try:

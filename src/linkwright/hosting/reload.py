@@ -120,16 +120,16 @@ class LiveReload:
         if self._watch is None:
             self._watch = FileWatch(self._on_change, self._on_watch_failure)
         if self._watch.watch({file for call in self._targets for file in self._files_of_interest(call)}):
-            asyncio.get_running_loop().call_later(_CATCH_UP_SECONDS, self._catch_up)
+            asyncio.get_running_loop().call_later(_CATCH_UP_SECONDS, self._reload_missed)
 
     def _on_watch_failure(self, reason: str) -> None:
         self._log.warning_line("launch", f"model files are not watched for changes: {reason}")
 
-    def _catch_up(self) -> None:
+    def _reload_missed(self) -> None:
         """Reload descriptions whose files changed after they were read and before the watch began."""
         for call in self._targets if not self._closed else ():
             read_ns = self.descriptions.read_ns(call)
-            saved = [_saved_ns(path) for path in self._files_of_interest(call)]
+            saved = [_modified_ns(path) for path in self._files_of_interest(call)]
             if max(saved) > read_ns or (0 in saved and not self._is_broken(call)):
                 self._start_reload(call)
 
@@ -211,7 +211,7 @@ def _essence(finding: Diagnostic) -> tuple[object, ...]:
     return finding.code, finding.message, finding.span
 
 
-def _saved_ns(path: Path) -> int:
+def _modified_ns(path: Path) -> int:
     """Return the modification time of a file in nanoseconds since the epoch, or 0 if it does not exist."""
     try:
         return path.stat().st_mtime_ns

@@ -78,7 +78,9 @@ def _read(arguments: Sequence[str]) -> tuple[str | None, str | None, list[Diagno
         elif argument in _CONFIG or argument in _FIXED_FRAME:
             value = next(waiting, None)
             if value is None:
-                findings.append(_remark(phrase("argument '{argument}' of rviz2 needs a value", argument=argument)))
+                findings.append(
+                    _argument_warning(phrase("argument '{argument}' of rviz2 needs a value", argument=argument))
+                )
             elif argument in _CONFIG:
                 path = value
             else:
@@ -89,7 +91,7 @@ def _read(arguments: Sequence[str]) -> tuple[str | None, str | None, list[Diagno
         elif argument:
             known = (*_CONFIG, *_FIXED_FRAME, *_WITHOUT_MEANING_HERE)
             findings.append(
-                _remark(
+                _argument_warning(
                     phrase("argument '{argument}' of rviz2 is unknown", argument=argument),
                     did_you_mean(argument, known),
                 )
@@ -97,5 +99,5 @@ def _read(arguments: Sequence[str]) -> tuple[str | None, str | None, list[Diagno
     return path, fixed_frame, findings
 
 
-def _remark(message: Phrase, hint: Phrase | None = None) -> Diagnostic:
+def _argument_warning(message: Phrase, hint: Phrase | None = None) -> Diagnostic:
     return Diagnostic("LAUNCH144", message, hint=hint).with_changes(severity=Severity.WARNING)

@@ -129,12 +129,12 @@ class SignalWatch:
             return
         if session is None or session.loop is None:
             raise KeyboardInterrupt
-        session.loop.call_soon_threadsafe(self._loop_runs, session)
+        session.loop.call_soon_threadsafe(self._extend_deadline, session)
         if session.visiting:
             raise KeyboardInterrupt
         session.loop.call_soon_threadsafe(session.interrupt, interruption_text(number))
 
-    def _loop_runs(self, session: Session) -> None:
+    def _extend_deadline(self, session: Session) -> None:
         """Extend the deadline by the time that processes may take, because the event loop responds."""
         if not self._hurried:
             self._end_after(_DEADLINE_SECONDS + session.seconds_to_end())
@@ -142,7 +142,7 @@ class SignalWatch:
     def _end_after(self, seconds: float) -> None:
         if self._deadline is not None:
             self._deadline.cancel()
-        self._deadline = threading.Timer(seconds, self._end_at_once)
+        self._deadline = threading.Timer(seconds, self._end_immediately)
         self._deadline.daemon = True
         self._deadline.start()
 
@@ -154,7 +154,7 @@ class SignalWatch:
         if number is not None:
             signal_again(number)
 
-    def _end_at_once(self) -> None:
+    def _end_immediately(self) -> None:
         """End the process from a separate thread.
 
         The main thread may be blocked, or may be writing files that must be completed.

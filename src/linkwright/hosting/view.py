@@ -199,7 +199,7 @@ class ModelView:
             if not error.missing:
                 self.reload.bind(self._call, self._publish_repaired)
                 self.reload.report(self._call, error.diagnostics)
-                self.spawn(self._find_arguments(self._call, error))
+                self.spawn(self._request_arguments(self._call, error))
                 return True
             self.log.diagnostics(error.diagnostics)
             self.shut_down("there is no model")
@@ -233,10 +233,10 @@ class ModelView:
         self.clear_failure(broken)
         self._show_form()
         self._publish()
-        self._look_at_root()
+        self._set_fixed_frame()
         self.spawn(self.host.start_planned())
 
-    async def _find_arguments(self, call: XacroCall, error: DescriptionError) -> None:
+    async def _request_arguments(self, call: XacroCall, error: DescriptionError) -> None:
         """Show pages a form for arguments if the error is that arguments have no value."""
         form = await asyncio.to_thread(argument_form, call, self.finder, error.diagnostics)
         if form is not None and call is self._call and self._text is None:
@@ -254,7 +254,7 @@ class ModelView:
     def _set_arguments(self, values: dict[str, str]) -> None:
         self._publish_again(XacroCall(self._call.path, tuple(values.items())))
 
-    def _look_at_root(self) -> None:
+    def _set_fixed_frame(self) -> None:
         """Set the Fixed Frame to the root link of the model, unless it is a link of the model already."""
         robot = None if self._text is None else self.descriptions.library.read(self._text).robot
         manager = None if self._viewer is None else self._viewer.managers.shared

@@ -139,7 +139,7 @@ class ViewerHost:
         if not is_given_out:
             self._announce(server)
         if session.options.open_browser and server.pages_wait:
-            session.spawn(self._open_unless_back(viewer))
+            session.spawn(self._open_unless_reconnected(viewer))
         instead = "RViz" if plan.owner is not None else "Gazebo's window"
         session.log.info_line(
             plan.process_name, f"started in the launcher's process: the viewer in the browser replaces {instead}"
@@ -148,7 +148,7 @@ class ViewerHost:
         for running in nodes:
             _attach_panel(viewer, running)
 
-    async def _open_unless_back(self, viewer: Viewer) -> None:
+    async def _open_unless_reconnected(self, viewer: Viewer) -> None:
         """Open the page in a browser, unless a page of the previous run reconnects."""
         for _ in range(round(_RETURN_SECONDS / _LOOK_SECONDS)):
             if self._session.ending or len(viewer.audience) > 0:

@@ -42,12 +42,12 @@ def inertial_block(properties: MassProperties, indent: str = "", step: str = "  
     """
     lines = ["<inertial>"]
     for tag, attributes in inertial_parts(properties):
-        lines.append(f"{indent}{step}{start_tag(tag, attributes)}")
+        lines.append(f"{indent}{step}{empty_tag(tag, attributes)}")
     lines.append(f"{indent}</inertial>")
     return newline.join(lines)
 
 
-def start_tag(tag: str, attributes: Attributes) -> str:
+def empty_tag(tag: str, attributes: Attributes) -> str:
     """Return the self-closing tag of an element; values are numbers and need no escaping."""
     return f"<{tag} " + " ".join(f'{name}="{value}"' for name, value in attributes) + "/>"
 

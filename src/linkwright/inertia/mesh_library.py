@@ -76,7 +76,7 @@ class MeshLibrary:
         found = self._meshes.get(key)
         if found is None:
             try:
-                found = _unchanged(path, key)
+                found = _read_cached(path, key)
             except LinkwrightError as error:
                 found = error
             self._meshes[key] = found
@@ -134,7 +134,7 @@ _CACHE: BoundedCache[tuple[str, int, int], TriangleMesh] = BoundedCache(_CACHE_S
 """The meshes of files, by the path, the time of the last change in ns, and the size in bytes."""
 
 
-def _unchanged(path: Path, real: str) -> TriangleMesh:
+def _read_cached(path: Path, real: str) -> TriangleMesh:
     """Return the triangles of a file from the cache, or read the file if it has changed.
 
     A glTF file is read each time, because it may refer to other files.

@@ -8,7 +8,7 @@ from math import isclose
 
 from linkwright.diagnostics import SourceText, phrase
 from linkwright.geometry.mass import MassProperties
-from linkwright.inertia.blocks import Attributes, inertial_block, inertial_parts, start_tag
+from linkwright.inertia.blocks import Attributes, empty_tag, inertial_block, inertial_parts
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.urdf import Link
 from linkwright.xacro.faults import Frame, frames
@@ -128,7 +128,7 @@ def _changed_block(text: str, inertial: Element, properties: MassProperties) -> 
     for tag, attributes in inertial_parts(properties):
         child = inertial.first(tag)
         if child is None:
-            missing.append(f"{newline}{indent}{start_tag(tag, attributes)}")
+            missing.append(f"{newline}{indent}{empty_tag(tag, attributes)}")
         else:
             yield from _changed_attributes(text, child, attributes)
     if missing:

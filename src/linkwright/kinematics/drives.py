@@ -120,7 +120,7 @@ class CarDrive:
 
         `angle` is the steering angle in rad.
         """
-        speed, aside = forward / self.radius, self._aside(angle)
+        speed, aside = forward / self.radius, self._wheel_speed_difference(angle)
         return speed * (1.0 - aside), speed * (1.0 + aside)
 
     def motion(self, left: float, right: float, angle: float) -> tuple[float, float]:
@@ -128,11 +128,11 @@ class CarDrive:
 
         `angle` is the steering angle in rad. The forward velocity is the mean of those of both wheels.
         """
-        aside = self._aside(angle)
+        aside = self._wheel_speed_difference(angle)
         forward = (left / (1.0 - aside) + right / (1.0 + aside)) * self.radius / 2.0
         return forward, forward * tan(angle) / self.wheelbase
 
-    def _aside(self, angle: float) -> float:
+    def _wheel_speed_difference(self, angle: float) -> float:
         """Return the fraction by which the right wheel is faster, and the left one slower."""
         return self.traction_track / 2.0 * tan(angle) / self.wheelbase
 

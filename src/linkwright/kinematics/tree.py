@@ -56,7 +56,7 @@ class Layout:
     offsets: Array
 
 
-def lay_out(robot: Robot) -> Layout:
+def compute_layout(robot: Robot) -> Layout:
     """Return the layout of a robot, without links that are not connected to its root."""
     children, above = children_of(robot), parent_joints(robot)
     link_names = [robot.root]
@@ -117,7 +117,7 @@ def _align_z(axis: tuple[float, float, float]) -> Array | None:
 
 
 @dataclass(frozen=True, slots=True)
-class Following:
+class MimicRelation:
     """The relation of a joint to its leader: position = factor * position of `leader` + offset.
 
     A joint that mimics no other is its own leader.
@@ -128,7 +128,7 @@ class Following:
     offset: float = 0.0
 
 
-def resolve_mimics(robot: Robot, moving: Collection[str]) -> tuple[tuple[str, ...], Mapping[str, Following]]:
+def resolve_mimics(robot: Robot, moving: Collection[str]) -> tuple[tuple[str, ...], Mapping[str, MimicRelation]]:
     """Resolve each chain of mimic joints to its end.
 
     Args:
@@ -140,24 +140,24 @@ def resolve_mimics(robot: Robot, moving: Collection[str]) -> tuple[tuple[str, ..
         to its leader, by name. A joint whose chain ends in a cycle or at a joint that does not exist moves
         independently.
     """
-    following: dict[str, Following] = {}
+    following: dict[str, MimicRelation] = {}
     for name in robot.joints:
         if name in moving:
             following[name] = _follow(name, robot)
     return tuple(name for name, how in following.items() if how.leader == name), following
 
 
-def _follow(name: str, robot: Robot) -> Following:
+def _follow(name: str, robot: Robot) -> MimicRelation:
     leader, factor, offset = name, 1.0, 0.0
     seen = {name}
     while (mimic := robot.joints[leader].mimic) is not None:
         if mimic.joint in seen or mimic.joint not in robot.joints:
-            return Following(name)
+            return MimicRelation(name)
         seen.add(mimic.joint)
         leader = mimic.joint
         offset += factor * mimic.offset
         factor *= mimic.multiplier
-    return Following(leader, factor, offset)
+    return MimicRelation(leader, factor, offset)
 
 
 _BLOCK = 384
@@ -316,7 +316,7 @@ class KinematicTree:
     """
 
     def __init__(self, robot: Robot) -> None:
-        layout = lay_out(robot)
+        layout = compute_layout(robot)
         moving = {joint.name for joint in layout.body_joints}
         free, followers = resolve_mimics(robot, moving)
         self.joint_names: tuple[str, ...] = free

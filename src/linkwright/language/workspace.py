@@ -12,7 +12,7 @@ from linkwright.language.includes import IncludeIndex, real
 from linkwright.lint.checking import Checker, UniqueFindings
 from linkwright.lint.contexts import Contexts
 from linkwright.lint.finding import Finding
-from linkwright.lint.folders import Examined, reported, reported_of_package
+from linkwright.lint.folders import Examined, relevant_package_findings, reported
 from linkwright.lint.targets import DESCRIPTIONS, Targets
 from linkwright.packages import PackageFinder, enclosing_package
 from linkwright.packages.manifest import MANIFEST
@@ -150,7 +150,7 @@ class Workspace:
         overlay = Overlay({str(path): text for path, text in texts.items()})
         if subject.is_dir():
             diagnostics, trouble = self._checker.check_package(subject, overlay, Contexts())
-            return (*trouble, *reported_of_package(diagnostics, [subject]))
+            return (*trouble, *relevant_package_findings(diagnostics, [subject]))
         named = frozenset({subject}) if subject in texts else frozenset()
         targets = Targets((subject,), self.index.packages, named)
         checked, trouble = self._checker.check_file(subject, targets, overlay, Contexts())

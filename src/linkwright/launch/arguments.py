@@ -55,15 +55,15 @@ def check_arguments(description: LaunchDescription, given: Mapping[str, str]) ->
     for argument in declared:
         value = given.get(argument.name)
         if value is not None and argument.choices is not None and not argument.conditionally_included:
-            errors += _error_of(argument, given)
+            errors += _argument_errors(argument, given)
         elif value is None and argument.default_value is None and not argument.conditionally_included:
-            errors += [_misspelt(argument.name, undeclared, error) for error in _error_of(argument, given)]
+            errors += [_misspelt(argument.name, undeclared, error) for error in _argument_errors(argument, given)]
     if errors:
         raise LinkwrightError(*errors)
     return [_undeclared(name, names) for name in undeclared]
 
 
-def _error_of(argument: DeclareLaunchArgument, given: Mapping[str, str]) -> Sequence[Diagnostic]:
+def _argument_errors(argument: DeclareLaunchArgument, given: Mapping[str, str]) -> Sequence[Diagnostic]:
     from linkwright.launch.model.context import LaunchContext
 
     context = LaunchContext()
@@ -76,7 +76,7 @@ def _error_of(argument: DeclareLaunchArgument, given: Mapping[str, str]) -> Sequ
 
 
 def _misspelt(name: str, undeclared: Sequence[str], error: Diagnostic) -> Diagnostic:
-    """Add a hint to the error for a missing argument, if an undeclared argument has a similar name."""
+    """Add a hint on a similar undeclared argument, if any, to the error for a missing argument."""
     near = nearest(name, undeclared, limit=1)
     return (
         error.with_changes(hint=phrase("'{near}' is given; did you mean '{name}'?", near=near[0], name=name))
@@ -97,7 +97,7 @@ def _undeclared(name: str, declared: Sequence[str]) -> Diagnostic:
     return Diagnostic("LAUNCH113", message, severity=Severity.WARNING, hint=hint)
 
 
-def argument_listing(description: LaunchDescription) -> str:
+def format_arguments(description: LaunchDescription) -> str:
     """Return the text that ``ros2 launch --show-args`` prints.
 
     The text lists the names, descriptions and defaults of the declared arguments.

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from linkwright.launch.arguments import argument_listing
+from linkwright.launch.arguments import format_arguments
 from linkwright.launch.engine.service import LaunchService
 from linkwright.launch.frontend.include import IncludeLaunchDescription
 from linkwright.launch.frontend.launch_file import load_launch_file
@@ -84,7 +84,7 @@ def print_a_launch_file(*, launch_file_path: str) -> None:
 
 def print_arguments_of_launch_file(*, launch_file_path: str) -> None:
     """Print the arguments of a launch file."""
-    print(argument_listing(load_launch_file(Path(launch_file_path))))
+    print(format_arguments(load_launch_file(Path(launch_file_path))))
 
 
 def launch_a_launch_file(

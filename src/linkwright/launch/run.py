@@ -13,8 +13,8 @@ from linkwright.hosting.last_minutes import DEFAULT_HISTORY
 from linkwright.hosting.launch_log import LaunchLog
 from linkwright.hosting.signals import SignalWatch, own_environment, run_to_end
 from linkwright.hosting.xacro_calls import Descriptions, use_descriptions
-from linkwright.launch.arguments import argument_listing, check_arguments
-from linkwright.launch.engine.omissions import note_that_nothing_is_left
+from linkwright.launch.arguments import check_arguments, format_arguments
+from linkwright.launch.engine.omissions import add_no_skip_note
 from linkwright.launch.engine.session import LaunchSession
 from linkwright.launch.engine.supervisor import SessionOptions
 from linkwright.launch.frontend.launch_file import load_launch_file
@@ -108,7 +108,7 @@ def run_launch(
             description = load_launch_file(path)
         except LinkwrightError as error:
             if options.skip_missing:
-                note_that_nothing_is_left(error)
+                add_no_skip_note(error)
             raise
         log.diagnostics(check_arguments(description, given))
         return description, {
@@ -126,7 +126,7 @@ def show_arguments(target: LaunchTarget) -> str:
     Raises:
         LinkwrightError: the errors in the target or the launch file.
     """
-    return _read(target, argument_listing)
+    return _read(target, format_arguments)
 
 
 def print_description(target: LaunchTarget) -> str:
@@ -141,7 +141,10 @@ def print_description(target: LaunchTarget) -> str:
 
 
 def _read(target: LaunchTarget, describe: Callable[[LaunchDescription], str]) -> str:
-    """Read a launch file without running it, and return the result of `describe` for its description."""
+    """Read a launch file without launching it, and return a text about its description.
+
+    The function `describe` returns the text.
+    """
     finder = target.finder()
     with own_environment(finder):
         return describe(load_launch_file(target.resolve(finder)))
@@ -175,7 +178,7 @@ def run_description(
         with use_descriptions(Descriptions(finder)):
             description, values = load(log)
             if options.foxglove is not None:
-                description.add_action(_foxglove_bridge(options.foxglove))
+                description.add_action(_foxglove_bridge_action(options.foxglove))
             session = partial(LaunchSession, finder, options.for_session(title), log)
             given = {**options.configurations, **configurations}
             quiet = options.noninteractive
@@ -200,7 +203,7 @@ async def _run(
     return await session.run(description, values)
 
 
-def _foxglove_bridge(port: int) -> Action:
+def _foxglove_bridge_action(port: int) -> Action:
     """Return the action that starts the node to which Foxglove and Lichtblick connect."""
     from linkwright.launch.ros import Node
 

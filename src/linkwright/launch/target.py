@@ -77,7 +77,9 @@ class LaunchTarget:
 
 
 def parse_launch_words(words: Sequence[str]) -> tuple[LaunchTarget, dict[str, str]]:
-    """Parse the command line ``launch PACKAGE FILE [name:=value ...]`` or ``launch PATH [name:=value ...]``.
+    """Parse a command line that names a launch file and its arguments.
+
+    The forms are ``launch PACKAGE FILE [name:=value ...]`` and ``launch PATH [name:=value ...]``.
 
     Args:
         words: the arguments after ``launch``.

@@ -15,7 +15,7 @@ from linkwright.packages import enclosing_package
 from linkwright.xmltree import parse
 from linkwright.xmltree.reader import read_bytes
 
-_MOST_PASSES = 20
+_MAX_PASSES = 20
 _MARK = b"\xef\xbb\xbf"
 _XML_ENDINGS = (".urdf", ".xacro", ".xml")
 
@@ -59,7 +59,7 @@ def fix_file(path: Path, check: Check, *, unsafe: bool = False, write: bool = Tr
     """
     home = _home(path)
     result = FixResult()
-    for _ in range(_MOST_PASSES):
+    for _ in range(_MAX_PASSES):
         found = check(result.texts.get(str(path)) if not write else None)
         done = {file for file in result.texts if not write and file != str(path)}
         fixes = [
@@ -101,15 +101,15 @@ def write_text(path: Path, text: str, encoding: str = "utf-8") -> None:
 
 
 @dataclass(frozen=True, slots=True)
-class _Mendable:
+class _FixableFinding:
     code: str
     fix: Fix
 
 
-def _fixable(found: Iterable[Diagnostic], unsafe: bool) -> Iterator[_Mendable]:
+def _fixable(found: Iterable[Diagnostic], unsafe: bool) -> Iterator[_FixableFinding]:
     for diagnostic in found:
         if isinstance(diagnostic, Finding) and diagnostic.fix and (diagnostic.fix.safe or unsafe):
-            yield _Mendable(diagnostic.code, diagnostic.fix)
+            yield _FixableFinding(diagnostic.code, diagnostic.fix)
 
 
 def _home(path: Path) -> Path:
@@ -181,10 +181,10 @@ def _is_sound(file: str, text: str) -> bool:
 
 
 def _diff(file: str, text: str) -> str:
-    return unified(display_path(file), _text(file) or "", text)
+    return unified_changes(display_path(file), _text(file) or "", text)
 
 
-def unified(name: str, before: str, after: str) -> str:
+def unified_changes(name: str, before: str, after: str) -> str:
     """Return the changes of a file as a unified diff that ``patch -p0`` accepts."""
     lines = unified_diff(before.splitlines(keepends=True), after.splitlines(keepends=True), name, name)
     return "".join(line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n" for line in lines)

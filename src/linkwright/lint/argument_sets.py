@@ -32,7 +32,7 @@ from linkwright.xmltree import Document
 UNDECLARED = "XAC211"
 UNUSED = "XAC215"
 _NEEDED = "LINT303"
-_MISSING_FILES = frozenset({"XML101", "XAC506"})
+_FILE_CODES = frozenset({"XML101", "XAC506"})
 _MOST_TRIED = 12
 """The most values to try of those that a description compares its arguments with."""
 _ANY_VALUE = "value"
@@ -187,7 +187,7 @@ class SetCheck:
             if len(having) == len(runs):
                 found.append(diagnostic)
             elif not _holds_for_all_sets(diagnostic):
-                found.append(_under_condition(diagnostic, having, runs))
+                found.append(_add_condition(diagnostic, having, runs))
         best = next((run.checked for run in runs if run.checked.robot is not None), runs[0].checked)
         return replace(best, diagnostics=tuple(sorted_by_place(found, str(self.path))))
 
@@ -344,7 +344,7 @@ def _holds_for_all_sets(diagnostic: Diagnostic) -> bool:
     return rule is not None and rule.needs_all_sets
 
 
-def _under_condition(diagnostic: Diagnostic, having: Sequence[_Run], runs: Sequence[_Run]) -> Diagnostic:
+def _add_condition(diagnostic: Diagnostic, having: Sequence[_Run], runs: Sequence[_Run]) -> Diagnostic:
     """Return a finding with a note on the values under which it occurs.
 
     An error becomes a warning if all runs that have it use values that a launch argument merely offers. Such a value
@@ -394,7 +394,7 @@ def _may_depend_on_argument(code: str) -> bool:
     """
     if code.startswith("URDF"):
         return code not in TRUE_OF_PARTS
-    return code in (UNDECLARED, *_MISSING_FILES)
+    return code in (UNDECLARED, *_FILE_CODES)
 
 
 def _needs_arguments(

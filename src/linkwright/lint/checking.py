@@ -11,7 +11,7 @@ from linkwright.lint.configuration import read_settings, settings_for
 from linkwright.lint.contexts import Contexts
 from linkwright.lint.engine import Checked, examine, examine_package
 from linkwright.lint.finding import without_element
-from linkwright.lint.folders import MISSING_PACKAGE, Examined, reported, reported_of_package
+from linkwright.lint.folders import MISSING_PACKAGE, Examined, relevant_package_findings, reported
 from linkwright.lint.rule import Scope
 from linkwright.lint.selector_words import canonical
 from linkwright.lint.settings import Settings
@@ -93,7 +93,7 @@ class Checker:
         """Return the settings for a file or folder, and the findings about the settings file."""
         settings, trouble = settings_for(path) if self.config is None else read_settings(self.config)
         select = None if self.select is None else tuple(map(canonical, self.select))
-        return settings.with_words(select, tuple(map(canonical, self.ignore))), trouble
+        return settings.with_command_line(select, tuple(map(canonical, self.ignore))), trouble
 
     def check(self, targets: Targets, paths: Sequence[Path]) -> tuple[list[Diagnostic], Checked | None]:
         """Check files and packages.
@@ -117,7 +117,7 @@ class Checker:
             found.add((*trouble, *reported(result, examined, targets, paths)))
         for folder in targets.packages:
             diagnostics, trouble = self.check_package(folder, contexts=contexts)
-            found.add((*trouble, *reported_of_package(diagnostics, paths)))
+            found.add((*trouble, *relevant_package_findings(diagnostics, paths)))
         return found.all(), checked
 
     def check_file(
@@ -155,7 +155,7 @@ class Checker:
         configured = settings.arguments_of(file)
         if configured:
             return check.with_configured(configured), trouble
-        return check.with_callers(lambda: self._sets(file, targets.packages)), trouble
+        return check.with_callers(lambda: self._argument_sets(file, targets.packages)), trouble
 
     def check_package(
         self, folder: Path, overlay: Overlay | None = None, contexts: Contexts | None = None
@@ -165,7 +165,7 @@ class Checker:
         checked = examine_package(folder, settings, self.finder(folder / MANIFEST), overlay, contexts)
         return checked.diagnostics, trouble
 
-    def _sets(self, file: Path, packages: Sequence[Path]) -> tuple[ArgumentSet, ...]:
+    def _argument_sets(self, file: Path, packages: Sequence[Path]) -> tuple[ArgumentSet, ...]:
         """Return the argument sets that callers pass to a file.
 
         The callers are read once for all files.

@@ -21,11 +21,11 @@ if TYPE_CHECKING:
     from linkwright.lint.package import PackageContext
     from linkwright.lint.xacro_facts import XacroFacts
 
-_UNREAD = ()
+_NOT_COMPARED = ()
 """The content of the first description of its parts, until there is another one of the same parts."""
 
 
-class _Done(NamedTuple):
+class _StoredResults(NamedTuple):
     root: Element
     results: dict[Any, Any]
 
@@ -39,19 +39,19 @@ class Contexts:
 
     def __init__(self) -> None:
         self.packages: dict[Path, PackageContext] = {}
-        self._last: OfFile | None = None
+        self._last: FileContext | None = None
 
-    def of_file(self, path: Path) -> OfFile:
+    def of_file(self, path: Path) -> FileContext:
         """Return the data that checks of a file with the same settings share.
 
         Only the data of the last file is stored.
         """
         if self._last is None or self._last.path != path:
-            self._last = OfFile(path)
+            self._last = FileContext(path)
         return self._last
 
 
-class OfFile:
+class FileContext:
     """The data that checks of a file with several sets of arguments share.
 
     Attributes:
@@ -61,7 +61,7 @@ class OfFile:
     def __init__(self, path: Path) -> None:
         self.path = path
         self._facts: dict[Hashable, XacroFacts] = {}
-        self._done: dict[Hashable, dict[tuple[object, ...], _Done]] = {}
+        self._done: dict[Hashable, dict[tuple[object, ...], _StoredResults]] = {}
         self._places: dict[Hashable, int] = {}
 
     def facts(self, facts: XacroFacts) -> XacroFacts:
@@ -72,7 +72,7 @@ class OfFile:
         documents = tuple(id(file.document) for file in facts.files.values())
         key = (facts.is_library, frozenset(facts.given), documents)
         known = self._facts.get(key)
-        if known is None or (known.given != facts.given and known.pastes):
+        if known is None or (known.given != facts.given and known.substitutes_arguments):
             known = self._facts[key] = facts
         return known
 
@@ -88,12 +88,12 @@ class OfFile:
         """
         parts = tuple((element.tag, element.offset) for element in root.elements())
         known = self._done.setdefault((facts, is_whole, parts), {})
-        done = _Done(root, {})
+        done = _StoredResults(root, {})
         if not known:
-            known[_UNREAD] = done  # most expansions differ in their elements, so no content is compared
+            known[_NOT_COMPARED] = done  # most expansions differ in their elements, so no content is compared
             return done.results
-        if _UNREAD in known:
-            first = known.pop(_UNREAD)
+        if _NOT_COMPARED in known:
+            first = known.pop(_NOT_COMPARED)
             known[self._content(first.root)] = first
         return known.setdefault(self._content(root), done).results
 

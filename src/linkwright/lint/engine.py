@@ -127,7 +127,7 @@ def examine(
     except LinkwrightError as error:
         return Checked(path, None, (*trouble, *with_configured_severity(error.diagnostics, settings)), None)
     subject = Subject(description, finder, settings, contexts)
-    found = _run(subject, scopes, _of_library(description) if subject.is_library else description.diagnostics)
+    found = _run(subject, scopes, _library_findings(description) if subject.is_library else description.diagnostics)
     return Checked(path, subject.robot, (*trouble, *found), subject)
 
 
@@ -145,11 +145,11 @@ def _examine_world(
         return Checked(path, None, (*trouble, *with_configured_severity(error.diagnostics, settings)), None)
     found = list(described.diagnostics)
     if described.sdf is not None:
-        from linkwright.lint.worlds import check_sdf, for_classic, one_for_each_world
+        from linkwright.lint.worlds import adapt_to_classic, check_sdf, merge_missing_resources
         from linkwright.sdf.resources import ResourceFinder
 
-        found = [*for_classic([*found, *check_sdf(described.sdf, ResourceFinder(finder))], path)]
-        found = one_for_each_world(found)
+        found = [*adapt_to_classic([*found, *check_sdf(described.sdf, ResourceFinder(finder))], path)]
+        found = merge_missing_resources(found)
     diagnostics = sorted_by_place(with_configured_severity(found, settings), str(path))
     return Checked(path, None, (*trouble, *diagnostics), None, described.sdf)
 
@@ -170,14 +170,14 @@ def _find(subject: Subject, scopes: Collection[Scope], suppressions: Suppression
 
     Findings of unselected rules are included if they show whether a suppression comment is used.
     """
-    known = {} if has_rules_of_others() else subject.once(_findings_of_scopes)
+    known = {} if has_rules_of_others() else subject.once(_findings_cache)
     key = frozenset(scopes)
     if key not in known:
         known[key] = _run_rules(subject, scopes, suppressions)
     return known[key]
 
 
-def _findings_of_scopes(_: Subject) -> dict[frozenset[Scope], list[Diagnostic]]:
+def _findings_cache(_: Subject) -> dict[frozenset[Scope], list[Diagnostic]]:
     """Return a new cache of findings by scopes, which subjects with the same expansion share."""
     return {}
 
@@ -189,12 +189,12 @@ def _run_rules(subject: Subject, scopes: Collection[Scope], suppressions: Suppre
             continue
         if not _may_run(rule, subject):
             continue
-        found += map(_with_trail, _found_by(rule, subject))
+        found += map(_add_trail, _findings_of_rule(rule, subject))
     unread = subject.meshes.unread.diagnostics if subject.meshes.unread else ()
     return [*_without_repetitions(found), *(each.with_changes(severity=Severity.INFO) for each in unread)]
 
 
-def _found_by(rule: Rule, subject: Subject) -> Sequence[Diagnostic]:
+def _findings_of_rule(rule: Rule, subject: Subject) -> Sequence[Diagnostic]:
     """Return the findings of a rule.
 
     If a rule of another package raises an exception, the only finding is about this failure.
@@ -234,7 +234,7 @@ def _may_run(rule: Rule, subject: Subject) -> bool:
     return subject.is_whole and (rule.holds_for_libraries or not subject.is_library)
 
 
-def _of_library(described: Description) -> Iterator[Diagnostic]:
+def _library_findings(described: Description) -> Iterator[Diagnostic]:
     """Yield the findings on a file that only has parts for other files to include.
 
     These are the findings that hold for single parts, and a note that the file is not a robot by itself.
@@ -348,7 +348,7 @@ def _without_consequences(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]
     return [each for each in found if not follows(each)]
 
 
-def _with_trail(diagnostic: Diagnostic) -> Diagnostic:
+def _add_trail(diagnostic: Diagnostic) -> Diagnostic:
     """Return a finding with notes on the macro calls and includes that produced its element.
 
     A diagnostic without an element is returned unchanged.

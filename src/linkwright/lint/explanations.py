@@ -41,7 +41,7 @@ def is_explained(element: Element | None, tag: str) -> bool:
     """
     if element is None:
         return False
-    return any(map(_explains, (*_comments(element.first(tag), beside=True), *_comments(element, beside=False))))
+    return any(map(_is_explanation, (*_comments(element.first(tag), beside=True), *_comments(element, beside=False))))
 
 
 def _comments(element: Element | None, *, beside: bool) -> list[str]:
@@ -59,6 +59,6 @@ def _comments(element: Element | None, *, beside: bool) -> list[str]:
     return comments
 
 
-def _explains(comment: str) -> bool:
+def _is_explanation(comment: str) -> bool:
     words = {word.casefold() for word in _WORD.findall(comment)}
     return not _CODE.search(comment) and bool(words - _HEADINGS)

@@ -84,11 +84,11 @@ def reported(
         return examined.diagnostics
     is_minor = _is_in_minor_folder(examined.file, paths) or _is_generated(examined.file, targets.files)
     is_part = _is_unused_part(examined, others)
-    found = _without_those_of_source(examined, others, _of_a_folder(examined.diagnostics, is_minor=is_minor))
+    found = _without_those_of_source(examined, others, _findings_for_folder(examined.diagnostics, is_minor=is_minor))
     return (diagnostic for diagnostic in found if not (is_part and diagnostic.code in _OF_WHOLE_ROBOTS))
 
 
-def reported_of_package(found: Iterable[Diagnostic], paths: Sequence[Path]) -> Iterator[Diagnostic]:
+def relevant_package_findings(found: Iterable[Diagnostic], paths: Sequence[Path]) -> Iterator[Diagnostic]:
     """Yield the findings about a package, but only errors in tests and discarded files."""
     roots = [path.absolute() for path in paths]
     for diagnostic in found:
@@ -109,7 +109,7 @@ def _package_of(file: Path) -> Path | None:
     return None if package is None else package[1]
 
 
-def _of_a_folder(found: Iterable[Diagnostic], *, is_minor: bool) -> Iterator[Diagnostic]:
+def _findings_for_folder(found: Iterable[Diagnostic], *, is_minor: bool) -> Iterator[Diagnostic]:
     """Yield the findings that matter in a file that the user did not name.
 
     For minor files, such as tests and discarded files, these are only errors, without missing packages.

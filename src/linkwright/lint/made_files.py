@@ -22,8 +22,8 @@ _READABLE = (".py", ".sh", ".bash", ".md", ".rst", ".txt", ".cpp", ".cc", ".hpp"
 _BUILD_FILES = frozenset({"setup.py", "CMakeLists.txt"})
 _LONGEST = 200_000
 _COMMENT = lazy_pattern(r"#.*")
-_INSTALLS = lazy_pattern(r"\binstall\s*\([^)]*\)", re.IGNORECASE)
-_MAKES = lazy_pattern(
+_INSTALL_COMMAND = lazy_pattern(r"\binstall\s*\([^)]*\)", re.IGNORECASE)
+_GENERATING_COMMAND = lazy_pattern(
     r"\bfile\s*\(\s*(?:DOWNLOAD|MAKE_DIRECTORY|WRITE|COPY|GENERATE|ARCHIVE_EXTRACT)\b"
     r"|\b(?:execute_process|configure_file|add_custom_command|add_custom_target|ExternalProject_\w+|FetchContent_\w+)\s*\(",
     re.IGNORECASE,
@@ -45,7 +45,7 @@ def is_made_later(package: PackageContext, path: str) -> bool:
     return (
         not _MAPS.isdisjoint(path.split("/")[:-1])
         or is_ignored_by_git(package.folder / path)
-        or _is_built(package, path.rpartition("/")[2])
+        or _is_generated_by_cmake(package, path.rpartition("/")[2])
         or _is_mentioned(package, path.rpartition("/")[2])
     )
 
@@ -124,7 +124,7 @@ def _names(pattern: str, path: str) -> bool:
     return any(fnmatchcase(item, pattern) for item in above)
 
 
-def _is_built(package: PackageContext, name: str) -> bool:
+def _is_generated_by_cmake(package: PackageContext, name: str) -> bool:
     """Return whether ``CMakeLists.txt`` generates a file with this name.
 
     The file is the output of xacro, of ``configure_file``, or of a custom command.
@@ -151,8 +151,10 @@ def is_made_by_cmake(package: PackageContext, path: str) -> bool:
     if source is None:
         return False
     text = _COMMENT.sub("", source.text)
-    rest = _INSTALLS.sub("", text)
-    return _MAKES.search(text) is not None and bool(re.search(rf"(?<![\w.-]){re.escape(path)}(?![\w.-])", rest))
+    rest = _INSTALL_COMMAND.sub("", text)
+    return _GENERATING_COMMAND.search(text) is not None and bool(
+        re.search(rf"(?<![\w.-]){re.escape(path)}(?![\w.-])", rest)
+    )
 
 
 def _is_mentioned(package: PackageContext, name: str) -> bool:

@@ -25,14 +25,16 @@ def with_file_severity(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic
     for diagnostic in diagnostics:
         if diagnostic.code != _MISSING or diagnostic.span is None or diagnostic.severity is not Severity.ERROR:
             yield diagnostic
-        elif (found := None if (built := _of_built(diagnostic)) else _of_package_folder(diagnostic)) is not None:
+        elif (
+            found := None if (built := _built_file_finding(diagnostic)) else _package_file_finding(diagnostic)
+        ) is not None:
             elsewhere.setdefault(diagnostic.span.file, []).append(found)
         else:
             yield built or diagnostic
     yield from (with_related(first, others) for first, *others in elsewhere.values())
 
 
-def _of_built(diagnostic: Diagnostic) -> Diagnostic | None:
+def _built_file_finding(diagnostic: Diagnostic) -> Diagnostic | None:
     path = _path(diagnostic)
     package = find_package(path.parent)
     if package is None or not is_made_later(package, path.relative_to(package.folder).as_posix()):
@@ -41,7 +43,7 @@ def _of_built(diagnostic: Diagnostic) -> Diagnostic | None:
     return diagnostic.with_changes(severity=Severity.INFO, hint=hint)
 
 
-def _of_package_folder(diagnostic: Diagnostic) -> Diagnostic | None:
+def _package_file_finding(diagnostic: Diagnostic) -> Diagnostic | None:
     assert diagnostic.span is not None
     folder = Path(diagnostic.span.file).absolute().parent
     package = find_package(folder)

@@ -24,7 +24,7 @@ GROUP = "linkwright.lint_rules"
 """Of the entry points."""
 
 _OURS = "LW"
-_OF_PACKAGES = ("launch_", "package_")
+_PACKAGE_MODULE_PREFIXES = ("launch_", "package_")
 """How the names begin of our modules with rules about packages, and no others: a check of a file needs none of them."""
 _CODE = lazy_pattern("[A-Z]{2,10}[0-9]{3}")
 _NAME = lazy_pattern("[a-z0-9]+(-[a-z0-9]+)*")
@@ -152,7 +152,7 @@ def _modules(module: ModuleType, is_ours: bool, whole: bool) -> Iterator[ModuleT
     yield module
     for folder in getattr(module, "__path__", ()):
         for name in sorted(_module_names(folder, is_ours=is_ours)):
-            if whole or not name.startswith(_OF_PACKAGES):
+            if whole or not name.startswith(_PACKAGE_MODULE_PREFIXES):
                 yield import_module(f"{module.__name__}.{name}")
 
 

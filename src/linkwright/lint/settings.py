@@ -93,14 +93,16 @@ class Settings:
         return any(
             specificity(selectors, code)
             for pattern, selectors in self.per_file_ignores
-            if self._is_meant(Path(file), pattern)
+            if self._matches_pattern(Path(file), pattern)
         )
 
     def arguments_of(self, file: Path) -> tuple[Mapping[str, str], ...]:
         """Return the configured argument sets of a description; empty if there are none."""
-        return tuple(values for pattern, sets in self.arguments if self._is_meant(file, pattern) for values in sets)
+        return tuple(
+            values for pattern, sets in self.arguments if self._matches_pattern(file, pattern) for values in sets
+        )
 
-    def _is_meant(self, file: Path, pattern: str) -> bool:
+    def _matches_pattern(self, file: Path, pattern: str) -> bool:
         path = file.absolute()
         if self.folder is not None and path.is_relative_to(self.folder):
             path = path.relative_to(self.folder)
@@ -115,7 +117,7 @@ class Settings:
                 best, severity = closeness, wanted
         return severity
 
-    def with_words(self, select: tuple[str, ...] | None, ignore: tuple[str, ...]) -> Settings:
+    def with_command_line(self, select: tuple[str, ...] | None, ignore: tuple[str, ...]) -> Settings:
         """Return the settings combined with the selectors of the command line.
 
         `select` replaces the selection and the ignored codes of the settings; `ignore` is added.

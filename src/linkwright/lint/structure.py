@@ -30,13 +30,13 @@ class Place(NamedTuple):
     owner: Element | None
 
     @property
-    def of_owner(self) -> str:
+    def owner_suffix(self) -> str:
         """The text that follows an element's tag in a message, such as `` of joint 'elbow'``."""
         return "" if self.owner is None or self.owner is self.element else f" of {_owner_name(self.owner)}"
 
     def __str__(self) -> str:
         """Return the name of the element for messages, such as ``<limit> of joint 'elbow'``."""
-        return _owner_name(self.element) if self.owner is self.element else f"<{self.rule.tag}>{self.of_owner}"
+        return _owner_name(self.element) if self.owner is self.element else f"<{self.rule.tag}>{self.owner_suffix}"
 
 
 class Structure:
@@ -52,7 +52,7 @@ class Structure:
     @cached_property
     def places(self) -> list[Place]:
         """The elements that URDF defines, in document order; empty if the root is not a ``<robot>``."""
-        return self._walked[0]
+        return self._classified_elements[0]
 
     @cached_property
     def unknown_elements(self) -> list[tuple[Place, Element]]:
@@ -60,7 +60,7 @@ class Structure:
 
         Elements of other namespaces are left out, too.
         """
-        return [(place, child) for place, child in self._walked[1] if not _is_expected(place, child)]
+        return [(place, child) for place, child in self._classified_elements[1] if not _is_expected(place, child)]
 
     @cached_property
     def unknown_attributes(self) -> list[tuple[Place, str]]:
@@ -73,7 +73,7 @@ class Structure:
         ]
 
     @cached_property
-    def _walked(self) -> tuple[list[Place], list[tuple[Place, Element]]]:
+    def _classified_elements(self) -> tuple[list[Place], list[tuple[Place, Element]]]:
         """The elements that URDF defines, and the unknown elements in them, both in document order."""
         known: list[Place] = []
         unknown: list[tuple[Place, Element]] = []

@@ -16,7 +16,7 @@ from linkwright.xmltree import Document, Element
 if TYPE_CHECKING:
     from linkwright.geometry.shapes import Placement
     from linkwright.kinematics import KinematicTree
-    from linkwright.lint.contexts import Contexts, OfFile
+    from linkwright.lint.contexts import Contexts, FileContext
     from linkwright.lint.extents import Extents
     from linkwright.lint.meshes import MeshFacts
     from linkwright.lint.package import PackageContext
@@ -183,7 +183,7 @@ class Subject:
         return facts if self._shared is None else self._shared.facts(facts)
 
     @property
-    def _shared(self) -> OfFile | None:
+    def _shared(self) -> FileContext | None:
         """The data that checks with different argument sets share, or None for plain URDF."""
         if self._contexts is None or self.expansion is None or self.description.overlay is not None:
             return None

@@ -102,7 +102,7 @@ def hints_of_reader(subject: Subject) -> dict[Span | None, str]:
     return {found.span: found.hint or "" for found in subject.reading.diagnostics}
 
 
-def meant_element(rule: ElementRule, child: Element) -> str | None:
+def intended_element(rule: ElementRule, child: Element) -> str | None:
     """Return the allowed element that was probably intended by an unknown one, or None."""
     if child.tag in HOMES:
         return None
@@ -120,7 +120,7 @@ def is_misspelt(name: str, meant: str) -> bool:
     return misspelling_of(name, [meant]) is not None
 
 
-def meant_attribute(place: Place, attribute: str) -> str | None:
+def intended_attribute(place: Place, attribute: str) -> str | None:
     """Return the absent attribute that was probably intended by an unknown one, or None."""
     known = [rule.name for rule in place.rule.attributes if rule.name not in place.element.attributes]
     other = _OTHER_ATTRIBUTES.get(attribute.casefold())

@@ -22,7 +22,7 @@ from linkwright.lint.rules.inertia_tensor import (
     TriangleInequality,
 )
 from linkwright.lint.tensors import flaw_of
-from linkwright.sdf.figures import figure_of
+from linkwright.sdf.figures import actor_model
 from linkwright.sdf.joints import Axis, Joint
 from linkwright.sdf.links import Collision, Inertial, Link, Visual
 from linkwright.sdf.mesh_files import shapes_of
@@ -57,14 +57,19 @@ def check_sdf(sdf: Sdf, finder: ResourceFinder) -> Iterator[Diagnostic]:
     models = [*sdf.models, *(model for world in sdf.worlds for model in world.models)]
     found = (diagnostic for model in models for diagnostic in _model(model, static=False))
     actors = [*sdf.actors, *(actor for world in sdf.worlds for actor in world.actors)]
-    for finding in (*_steps(sdf), *found, *_axes(models), *_missing_meshes([*models, *map(figure_of, actors)], finder)):
+    for finding in (
+        *_steps(sdf),
+        *found,
+        *_axes(models),
+        *_missing_meshes([*models, *map(actor_model, actors)], finder),
+    ):
         key = (finding.span, str(finding.message))
         if key not in reported:
             reported.add(key)
             yield finding
 
 
-def one_for_each_world(found: Iterable[Diagnostic]) -> list[Diagnostic]:
+def merge_missing_resources(found: Iterable[Diagnostic]) -> list[Diagnostic]:
     """Merge the findings on missing models and meshes of a world into one with notes.
 
     Findings with different codes or severities are not merged. For example, files that Gazebo downloads itself need no
@@ -85,7 +90,7 @@ def one_for_each_world(found: Iterable[Diagnostic]) -> list[Diagnostic]:
     ]
 
 
-def for_classic(found: Iterable[Diagnostic], path: Path) -> Iterator[Diagnostic]:
+def adapt_to_classic(found: Iterable[Diagnostic], path: Path) -> Iterator[Diagnostic]:
     """Yield the findings on a world, adapted if its package is for Gazebo classic.
 
     A warning about a construct that only gz refuses then becomes an information.

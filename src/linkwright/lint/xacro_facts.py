@@ -299,7 +299,7 @@ class XacroFacts:
         package = self.package
         folder = (package.folder if package else self.path.parent).absolute()
         main = next(iter(self.files))
-        return {path: facts for path, facts in self.files.items() if path == main or _lies_in(path, folder)}
+        return {path: facts for path, facts in self.files.items() if path == main or _is_in_folder(path, folder)}
 
     @cached_property
     def neighbours(self) -> Mapping[Path, FileFacts]:
@@ -313,7 +313,7 @@ class XacroFacts:
         return {path: FileFacts.of(document) for path, document in documents.items() if path.absolute() not in known}
 
     @cached_property
-    def pastes(self) -> bool:
+    def substitutes_arguments(self) -> bool:
         """Whether arguments are substituted into expressions, so that values may become names."""
         return any(facts.pasted for facts in self._all())
 
@@ -323,7 +323,7 @@ class XacroFacts:
         found: set[str] = set()
         for facts in self._all():
             found |= facts.names | facts.blocks
-        if self.pastes:
+        if self.substitutes_arguments:
             for value in self.given.values():
                 found |= identifiers(value)
         return frozenset(found)
@@ -393,7 +393,7 @@ def _in_block_property(parents: tuple[Element, ...]) -> bool:
     return any(parent.tag == "xacro:property" for parent in parents)
 
 
-def _lies_in(path: Path, folder: Path) -> bool:
+def _is_in_folder(path: Path, folder: Path) -> bool:
     try:
         return path.resolve().is_relative_to(folder.resolve())
     except OSError:

@@ -83,7 +83,7 @@ def identifiers(text: str) -> frozenset[str]:
 
 @lru_cache(maxsize=20_000)
 def _mentions(text: str) -> Mentions:
-    gathered = _Gathered()
+    gathered = _MentionCollector()
     gathered.text(text, 0)
     return Mentions(
         frozenset(gathered.names),
@@ -97,7 +97,7 @@ def _mentions(text: str) -> Mentions:
 
 
 @dataclass
-class _Gathered:
+class _MentionCollector:
     names: set[str] = field(default_factory=set)
     arguments: set[str] = field(default_factory=set)
     pasted: set[str] = field(default_factory=set)

@@ -130,14 +130,14 @@ class _FieldCode:
             return f"    value = Checks.check_fixed_array({name!r}, value, K_{name})\n"
         if kind.is_numeric_array:
             assert primitive is not None
-            usual = f"value.__class__ is Array and value.typecode == {primitive.array_code!r}" + self._usual_length()
+            usual = f"value.__class__ is Array and value.typecode == {primitive.array_code!r}" + self._length_check()
             return f"    if not ({usual}): value = Checks.check_sequence({name!r}, value, K_{name})\n"
         if kind.container is not Container.ONE:
             cls = f"C_{name}" if primitive is None else primitive.python.__name__
             check = f"value = Checks.check_values({name!r}, value, K_{name}, {cls})"
             if kind.string_bound is not None:
                 return f"    {check}\n"
-            usual = f"value.__class__ is List and Set(Map(Type, value)) <= {{{cls}}}" + self._usual_length()
+            usual = f"value.__class__ is List and Set(Map(Type, value)) <= {{{cls}}}" + self._length_check()
             return f"    if not ({usual}): {check}\n"
         if primitive is None:
             check = f"check_message({name!r}, value, C_{name})"
@@ -153,7 +153,7 @@ class _FieldCode:
             check = f"check_text({name!r}, value, {kind.string_bound})"
         return f"    if not ({self._usual('value')}): value = Checks.{check}\n"
 
-    def _usual_length(self) -> str:
+    def _length_check(self) -> str:
         """Return the expression that tests the number of values; empty if the number is not bounded."""
         if self.kind.size is None:
             return ""

@@ -108,10 +108,10 @@ class Message:
         return f"{module}.{type(self).__name__}({', '.join(values)})"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _remade, (self.TYPE_NAME, tuple(getattr(self, slot) for slot in self.__slots__))
+        return _rebuild, (self.TYPE_NAME, tuple(getattr(self, slot) for slot in self.__slots__))
 
 
-def _remade(type_name: str, values: tuple[Any, ...]) -> Message:
+def _rebuild(type_name: str, values: tuple[Any, ...]) -> Message:
     """Create a message from the values of its slots, for copies and pickles.
 
     No module needs to be imported by its name.

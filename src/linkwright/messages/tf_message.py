@@ -298,7 +298,7 @@ class TFMessage(Message):
         """
         if self._list is None:
             if self._received is not None:
-                self._list = _ordinary_reader()(self._received.data)._list
+                self._list = _generic_reader()(self._received.data)._list
                 self._received = self._batch = None
             else:
                 assert self._batch is not None
@@ -357,7 +357,7 @@ class TFMessage(Message):
             return layout_for(batch.parents, batch.children).with_one_stamp(batch.stamp_ns, batch.poses)
         values: list[Any] = self._list
         if len(values) < _FEW:
-            return _ordinary_writer()(self)
+            return _generic_writer()(self)
         parents = tuple([value._header._frame_id for value in values])
         children = tuple([value._child_frame_id for value in values])
         stamps = [(value._header._stamp._sec, value._header._stamp._nanosec) for value in values]
@@ -366,10 +366,10 @@ class TFMessage(Message):
     @classmethod
     def _read(cls, data: bytes) -> TFMessage:
         if len(data) < _SHORT:
-            return _ordinary_reader()(data)
+            return _generic_reader()(data)
         received = matching_layout(data)
         if received is None:
-            message = _ordinary_reader()(data)
+            message = _generic_reader()(data)
             values = message.transforms
             layout = layout_for(
                 tuple([value.header.frame_id for value in values]), tuple([value.child_frame_id for value in values])
@@ -397,7 +397,7 @@ def _poses(transforms: list[Any]) -> NDArray[np.float64]:
 
 
 @cache
-def _ordinary_writer() -> Callable[[Message], bytes]:
+def _generic_writer() -> Callable[[Message], bytes]:
     """Return the function that writes transforms one by one, compiled on first use."""
     from linkwright.messages.cdr.writer import compile_writer
 
@@ -405,7 +405,7 @@ def _ordinary_writer() -> Callable[[Message], bytes]:
 
 
 @cache
-def _ordinary_reader() -> Callable[[bytes], TFMessage]:
+def _generic_reader() -> Callable[[bytes], TFMessage]:
     """Return the function that reads transforms one by one, compiled on first use."""
     from linkwright.messages.cdr.reader import compile_reader
 

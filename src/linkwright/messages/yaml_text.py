@@ -20,7 +20,7 @@ from linkwright.messages.conversion import CUT, Abridgement, abbreviated, to_dic
 from linkwright.messages.definitions.interfaces import Container, Field, FieldType
 from linkwright.messages.message import Message, definition_of
 
-_LONGEST_REMEMBERED = 200
+_MAX_CACHED_LENGTH = 200
 
 
 def to_yaml(
@@ -41,7 +41,7 @@ def to_yaml(
         flow_style: whether lists are written in brackets, and the messages in them in braces.
     """
     if flow_style:
-        return _dumped(to_dict(message, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str), flow_style=True)
+        return _dump(to_dict(message, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str), flow_style=True)
     lines: list[str] = []
     _Writer(Abridgement(truncate_length, no_arr, no_str), lines).message(message, "", ())
     return "".join(lines) or "{}\n"
@@ -120,9 +120,9 @@ class _Writer:
 
     def _text(self, value: Any, way: tuple[str, ...]) -> str:
         text = self._shown.cut(value.decode("latin-1")) if isinstance(value, bytes) else self._shown.text(value)
-        if len(text) <= _LONGEST_REMEMBERED and text.isprintable():
+        if len(text) <= _MAX_CACHED_LENGTH and text.isprintable():
             return _scalar(text)
-        return _placed_scalar(text, way)
+        return _block_scalar(text, way)
 
 
 _Step = tuple[str, str, FieldType, Callable[[Any], str] | None]
@@ -166,16 +166,16 @@ def _float_text(value: float) -> str:
 @lru_cache(maxsize=8192)
 def _scalar(text: str) -> str:
     """Format a single-line string as a value or a key."""
-    return _dumped({"k": text}, flow_style=False)[len("k: ") : -1]
+    return _dump({"k": text}, flow_style=False)[len("k: ") : -1]
 
 
-def _placed_scalar(text: str, way: tuple[str, ...]) -> str:
+def _block_scalar(text: str, way: tuple[str, ...]) -> str:
     """Format a multi-line string, whose indentation depends on its path.
 
     PyYAML formats the string inside containers of the same kinds.
     """
-    marker = _dumped(_wrapped("X", way), flow_style=False)
-    return _dumped(_wrapped(text, way), flow_style=False)[marker.index("X") : -1]
+    marker = _dump(_wrapped("X", way), flow_style=False)
+    return _dump(_wrapped(text, way), flow_style=False)[marker.index("X") : -1]
 
 
 def _wrapped(text: str, way: tuple[str, ...]) -> Any:
@@ -185,7 +185,7 @@ def _wrapped(text: str, way: tuple[str, ...]) -> Any:
     return value
 
 
-def _dumped(data: Any, *, flow_style: bool) -> str:
+def _dump(data: Any, *, flow_style: bool) -> str:
     import yaml  # imported here because only programs that show messages need it
 
     class Dumper(yaml.SafeDumper):

@@ -12,7 +12,7 @@ _active: ContextVar[PackageFinder | None] = ContextVar("linkwright_package_finde
 
 
 def current_finder() -> PackageFinder:
-    """Return the finder of the innermost `use_finder`, or a new finder that starts in the current folder."""
+    """Return the finder of the innermost `use_finder`, or a new one for the current folder."""
     return _active.get() or PackageFinder()
 
 

@@ -48,7 +48,7 @@ def is_share_of_prefix(folder: Path) -> bool:
 
 
 def share_in_prefix(prefix: Path, name: str) -> Path | None:
-    """Return the share folder of a package in one prefix, or None if the prefix does not contain it.
+    """Return the share folder of a package in one prefix, or None if it is not installed there.
 
     A ``package.xml`` in the share folder suffices, because hand-written ``setup.py`` files often do not install the
     index marker.

@@ -1,4 +1,4 @@
-"""The ament resource index, in which packages register resources (``ament_index_python.resources``).
+"""The ament resource index of packages' resources (``ament_index_python.resources``).
 
 Packages in source trees count as registered under the type ``packages``. Their other resources are known only after a
 build.
@@ -105,7 +105,7 @@ def _check_type(kind: str) -> None:
 
 
 def _prefixes() -> list[Path]:
-    """Return the prefixes of the environment, and the prefixes of installed packages that are not sourced."""
+    """Return the prefixes of the environment, and of installed packages that are not sourced."""
     shares = current_finder().packages().values()
     unsourced = (install_prefix(share) for share in shares if is_installed(share))
     return list(dict.fromkeys([*environment_prefixes(os.environ), *unsourced]))

@@ -1,4 +1,4 @@
-"""The finder for packages in the environment, colcon workspaces, source trees and shipped packages."""
+"""The finder for packages in the environment, workspaces, source trees and shipped packages."""
 
 from __future__ import annotations
 
@@ -60,8 +60,8 @@ class PackageFinder:
     2. the prefixes of ``AMENT_PREFIX_PATH`` (a sourced ROS or workspace);
     3. colcon's ``install`` folders in the start folders and in the folders above them, merged or isolated, and the
        prefix that contains a start folder, such as ``/opt/ros/humble`` if it is not sourced;
-    4. source trees: the package that contains a start folder and its sibling packages, the packages below
-       a start folder, and the packages below ``src`` in the folders above it;
+    4. source trees: the package that contains a start folder and its sibling packages, the packages below a start
+       folder, and the packages below ``src`` in the folders above it;
     5. the packages shipped with Linkwright;
     6. Linkwright's substitutes for ROS packages that launch files include; see `linkwright.packages.share_layout`.
 
@@ -125,8 +125,11 @@ class PackageFinder:
         return share
 
     def find_in_sources(self, name: str) -> Path | None:
-        """Return the share folder of a package in the source trees, or None; earlier builds are ignored."""
-        found = (_share_of(name, self._scan(root).find(name)) for root in self._source_roots())
+        """Return the share folder of a package in the source trees, or None.
+
+        The files of an earlier build are ignored.
+        """
+        found = (_share_of_optional_sources(name, self._scan(root).find(name)) for root in self._source_roots())
         return next(filter(None, found), None)
 
     def share(self, name: str) -> Path:
@@ -142,7 +145,7 @@ class PackageFinder:
             if name not in self._meant:
                 self._meant[name] = self._nearest(name)
             meant, is_slip = self._meant[name]
-            raise PackageNotFoundError(name, self._searched(), meant, is_slip=is_slip)
+            raise PackageNotFoundError(name, self._searched_locations(), meant, is_slip=is_slip)
         return share
 
     def packages(self) -> dict[str, Path]:
@@ -177,7 +180,7 @@ class PackageFinder:
         """
         if environment.get(ament.PREFIX_PATH):
             return
-        shares = (share for install in self._installs() for _, share in ament.packages_in_install(install))
+        shares = (share for install in self._install_folders() for _, share in ament.packages_in_install(install))
         prefixes = dict.fromkeys(str(install_prefix(share)) for share in shares) or [str(self._starts[0] / "install")]
         self._offered = environment[ament.PREFIX_PATH] = os.pathsep.join(prefixes)
 
@@ -201,34 +204,34 @@ class PackageFinder:
         places = (self._in_sources, self._in_installs) if self._sources_first else (self._in_installs, self._in_sources)
         for place in places:
             yield from place(name)
-        yield self._shipped().get(name)
+        yield self._shipped_packages().get(name)
         yield substituted_share(name)
 
     def _in_installs(self, name: str) -> Iterator[Path | None]:
-        for install in self._installs():
+        for install in self._install_folders():
             yield ament.share_in_install(install, name)
         for prefix in self._holding():
             yield ament.share_in_prefix(prefix, name)
 
     def _in_sources(self, name: str) -> Iterator[Path | None]:
-        yield _share_of(name, dict(self._enclosing()).get(name))
+        yield _share_of_optional_sources(name, dict(self._enclosing_packages()).get(name))
         for root in self._source_roots():
-            yield _share_of(name, self._scan(root).find(name))
+            yield _share_of_optional_sources(name, self._scan(root).find(name))
 
     def _all(self) -> Iterator[tuple[str, Path]]:
         for prefix in self._prefixes():
             yield from ament.packages_in_prefix(prefix)
-        for install in self._installs():
+        for install in self._install_folders():
             yield from ament.packages_in_install(install)
         for prefix in self._holding():
             yield from ament.packages_in_prefix(prefix)
-        yield from self._enclosing()
+        yield from self._enclosing_packages()
         for root in self._source_roots():
             yield from self._scan(root).packages().items()
-        yield from self._shipped().items()
+        yield from self._shipped_packages().items()
         yield from substitutes()
 
-    def _upwards(self) -> Iterator[Path]:
+    def _start_folders_and_parents(self) -> Iterator[Path]:
         seen: set[Path] = set()
         for start in self._starts:
             for folder in (start, *start.parents):
@@ -236,16 +239,16 @@ class PackageFinder:
                     seen.add(folder)
                     yield folder
 
-    def _installs(self) -> Iterator[Path]:
-        for folder in self._upwards():
+    def _install_folders(self) -> Iterator[Path]:
+        for folder in self._start_folders_and_parents():
             install = folder / "install"
             if ament.is_colcon_install(install):
                 yield install
 
     def _holding(self) -> Iterator[Path]:
-        return (folder.parent for folder in self._upwards() if ament.is_share_of_prefix(folder))
+        return (folder.parent for folder in self._start_folders_and_parents() if ament.is_share_of_prefix(folder))
 
-    def _enclosing(self) -> Iterator[tuple[str, Path]]:
+    def _enclosing_packages(self) -> Iterator[tuple[str, Path]]:
         for start in self._starts:
             found = enclosing_package(start)
             if found:
@@ -271,26 +274,27 @@ class PackageFinder:
             scan = self._scans[root] = SourceScan(root)
         return scan
 
-    def _shipped(self) -> dict[str, Path]:
+    def _shipped_packages(self) -> dict[str, Path]:
         folder = shipped_folder()
         return {} if folder is None else SourceScan(folder).packages()
 
     # --- the text of the error -------------------------------------------------------------------------------
 
     def _nearest(self, name: str) -> tuple[Phrase | None, bool]:
-        """Return a hint on a package with a similar name, or None, and whether the name is a misspelling."""
-        ours = self._shipped()
+        """Return a hint on a similar package name, or None, and whether the name is a misspelling."""
+        ours = self._shipped_packages()
         known = [package for package in self.packages() if package not in ours or is_misspelt(name, [package])]
         return did_you_mean(name, known), is_misspelt(name, known)
 
-    def _searched(self) -> list[Phrase]:
+    def _searched_locations(self) -> list[Phrase]:
         prefixes = self._prefixes()
         if prefixes:
             places = [phrase("AMENT_PREFIX_PATH: {prefixes}", prefixes=os.pathsep.join(map(str, prefixes)))]
         else:
             places = [phrase("AMENT_PREFIX_PATH: not set")]
         places += [
-            phrase("colcon install folder {install}", install=display_path(install)) for install in self._installs()
+            phrase("colcon install folder {install}", install=display_path(install))
+            for install in self._install_folders()
         ]
         places += [phrase("the packages installed in {prefix}", prefix=display_path(path)) for path in self._holding()]
         for root in self._source_roots():
@@ -306,7 +310,7 @@ class PackageFinder:
                 phrase("{folder}, which names no package", folder=display_path(folder / "package.xml"))
                 for folder in scan.unnamed
             ]
-        shipped = joined(self._shipped()) or phrase("none")
+        shipped = joined(self._shipped_packages()) or phrase("none")
         places.append(phrase("the packages shipped with Linkwright: {shipped}", shipped=shipped))
         return places
 
@@ -323,7 +327,7 @@ def shipped_folder() -> Path | None:
     return None
 
 
-def _share_of(name: str, folder: Path | None) -> Path | None:
+def _share_of_optional_sources(name: str, folder: Path | None) -> Path | None:
     return None if folder is None else share_of_sources(name, folder)
 
 

@@ -27,7 +27,7 @@ def interface_files(share: Path, kind: str) -> dict[str, Path]:
 
 
 def interface_file(share: Path, kind: str, name: str) -> Path | None:
-    """Return the file that defines an interface of a package, or None if there is no such interface."""
+    """Return the file that defines an interface of a package, or None if there is no such file."""
     for ending in _ENDINGS[kind]:
         path = share / kind / (name + ending)
         if path.is_file():

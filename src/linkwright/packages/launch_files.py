@@ -9,7 +9,7 @@ from linkwright.packages.share_layout import source_of
 
 _ENDINGS = ("launch.py", "launch.xml", "launch.yaml", "launch.yml")
 _DEPTH = 4
-_BUILT = ("build", "install", "log")
+_BUILD_FOLDERS = ("build", "install", "log")
 
 
 def is_launch_file_name(name: str) -> bool:
@@ -18,7 +18,7 @@ def is_launch_file_name(name: str) -> bool:
 
 
 def launch_files_below(folder: Path) -> list[Path]:
-    """Return the launch files in a folder and a few levels below it, sorted by name in each folder.
+    """Return the launch files in a folder and a few levels below, sorted by name in each folder.
 
     Hidden folders and the build folders of colcon are left out. A share folder may contain a file twice, at its path in
     the sources and at its installed path (see `share_layout`). Such a file is returned once.
@@ -36,7 +36,7 @@ def _below(folder: Path, depth: int) -> Iterator[Path]:
         return
     for entry in entries:
         if entry.is_dir():
-            if depth and not entry.name.startswith(".") and entry.name not in _BUILT:
+            if depth and not entry.name.startswith(".") and entry.name not in _BUILD_FOLDERS:
                 yield from _below(entry, depth - 1)
         elif is_launch_file_name(entry.name):
             yield entry

@@ -20,7 +20,7 @@ _KEPT_SECONDS = 7 * 24 * 3600.0
 
 
 def link_folder(name: str, folder: Path, moved: Mapping[str, InstalledFile]) -> Path:
-    """Return a folder with links to a package's sources, and to the installed files at their installed paths.
+    """Return a folder of links to a package's sources, with installed files at installed paths.
 
     Files that the build generates are written instead of linked. The folder is created if no process has created it for
     the same content before.
@@ -54,7 +54,7 @@ def link_folder(name: str, folder: Path, moved: Mapping[str, InstalledFile]) -> 
             os.utime(share.parent)
         return share
     layouts.mkdir(parents=True, exist_ok=True)
-    _forget_old(layouts)
+    _delete_old_layouts(layouts)
     new_folder = Path(tempfile.mkdtemp(dir=layouts, prefix="new-"))
     try:
         for path, link in links.items():
@@ -73,7 +73,7 @@ def link_folder(name: str, folder: Path, moved: Mapping[str, InstalledFile]) -> 
     return share
 
 
-def _forget_old(layouts: Path) -> None:
+def _delete_old_layouts(layouts: Path) -> None:
     for layout in layouts.iterdir():
         with suppress(OSError):
             if time.time() - layout.stat().st_mtime > _KEPT_SECONDS:

@@ -1,4 +1,7 @@
-"""``package.xml``, the file that makes a folder a ROS package (REP 149), and the search for it as in colcon."""
+"""The file ``package.xml``, which makes a folder a ROS package (REP 149).
+
+Packages are searched as in colcon.
+"""
 
 from __future__ import annotations
 
@@ -110,7 +113,7 @@ class SourceScan:
                 return
             folder, depth = waiting.popleft()
             visited += 1
-            files, folders = _listing(folder)
+            files, folders = _list_folder(folder)
             if not IGNORE_MARKERS.isdisjoint(files):
                 continue
             if MANIFEST in files:
@@ -127,8 +130,8 @@ class SourceScan:
             waiting.extend((f"{folder}{os.sep}{entry}", depth + 1) for entry in folders)
 
 
-def _listing(folder: str) -> tuple[set[str], list[str]]:
-    """Return the names of the files in a folder, and the sorted names of the subfolders to search."""
+def _list_folder(folder: str) -> tuple[set[str], list[str]]:
+    """Return the names of the files in a folder, and the sorted names of subfolders to search."""
     files: set[str] = set()
     folders: list[str] = []
     try:
@@ -147,7 +150,10 @@ def _listing(folder: str) -> tuple[set[str], list[str]]:
 
 
 def _links_upwards(entry: os.DirEntry[str]) -> bool:
-    """Return whether a folder is a link to a folder that contains it, which would cause an endless search."""
+    """Return whether a folder is a link to a folder that contains it.
+
+    Following such a link would never end.
+    """
     if not entry.is_symlink():
         return False
     link = Path(entry.path)

@@ -1,4 +1,4 @@
-"""Checks of names and e-mail addresses in a package: the limits of build tools and the rules of REP 144.
+"""Checks of names and e-mail addresses: the limits of build tools and the rules of REP 144.
 
 Names that would break a build later are errors: a folder that Python cannot import, a project that CMake refuses, an
 e-mail address for which colcon drops the package's environment hooks. Deviations from REP 144 are warnings.
@@ -28,12 +28,12 @@ def check_package_name(name: str) -> list[Diagnostic]:
     if keyword.iskeyword(name):
         message = phrase("'{name}' cannot be the name of a package: it is a Python keyword", name=name)
         return [Diagnostic("PKG201", message, hint=phrase("did you mean {names}?", names=quoted(f"{name}_robot")))]
-    return [] if _departure(name) is None else [departure_from_rep(name)]
+    return [] if _violated_rule(name) is None else [rep_144_warning(name)]
 
 
-def departure_from_rep(name: str) -> Diagnostic:
+def rep_144_warning(name: str) -> Diagnostic:
     """Return the warning (PKG202) that names the rule of REP 144 that a name violates."""
-    advice = _departure(name) or _broken_rule(name)
+    advice = _violated_rule(name) or _broken_rule(name)
     message = phrase("package name '{name}' does not follow REP 144: {advice}", name=name, advice=advice)
     return Diagnostic("PKG202", message, severity=Severity.WARNING, hint=_suggestion(name))
 
@@ -58,7 +58,7 @@ def check_member_name(name: str, what: str) -> list[Diagnostic]:
 
 
 def check_dependency(name: str) -> list[Diagnostic]:
-    """Return the findings on the name of a dependency, which is a package or a system key (PKG204)."""
+    """Return the findings on the name of a dependency, a package or system key (PKG204)."""
     if _DEPENDENCY.fullmatch(name):
         return []
     message = phrase("'{name}' cannot be the name of a dependency", name=name)
@@ -74,7 +74,7 @@ def check_email(address: str) -> list[Diagnostic]:
 
 
 def is_accepted_name(name: str) -> bool:
-    """Return whether colcon builds a package with this name, even if REP 144 advises against the name."""
+    """Return whether colcon builds a package with this name, even if REP 144 advises against it."""
     return _ACCEPTED.fullmatch(name) is not None
 
 
@@ -93,7 +93,7 @@ def _broken_rule(name: str) -> Phrase:
     return phrase("it must begin with a letter")
 
 
-def _departure(name: str) -> Phrase | None:
+def _violated_rule(name: str) -> Phrase | None:
     if name != name.lower():
         return phrase("use lower case")
     if "__" in name:
@@ -107,7 +107,7 @@ def _suggestion(name: str) -> Phrase | None:
     better = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_").lstrip("0123456789_")
     if len(better) == 1:
         return phrase("choose a longer name, such as {names}", names=quoted(f"{better}_robot"))
-    fits = _IDENTIFIER.fullmatch(better) and better != name and _departure(better) is None
+    fits = _IDENTIFIER.fullmatch(better) and better != name and _violated_rule(better) is None
     return (
         phrase("did you mean {names}?", names=quoted(better))
         if fits

@@ -1,4 +1,4 @@
-"""The share folder of an unbuilt package, with the layout of a build, and the substitutes for ROS packages.
+"""The share folders of unbuilt packages, and the substitutes for ROS packages.
 
 In most packages, the installed files have the same paths as the sources, so the source folder serves as the share
 folder. Some packages differ: ``install(DIRECTORY description/urdf DESTINATION share/${PROJECT_NAME})``, or
@@ -30,15 +30,15 @@ from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.readers.installed_file import InstalledFile
 
 _GROUP = "linkwright.package_substitutes"
-_IN_PART = Path(__file__).parent / "substitutes"
+_PARTIAL_PREFIX = Path(__file__).parent / "substitutes"
 """The prefix of the packages that are replaced without files."""
 
 
 def substituted_share(name: str) -> Path | None:
-    """Return the share folder of the substitute for a ROS package, or None if there is no substitute."""
+    """Return the share folder of the substitute for a ROS package, or None if there is none."""
     share = _share_with_files(name)
     if share is None and name in _partly_replaced_packages():
-        return _IN_PART / "share" / name
+        return _PARTIAL_PREFIX / "share" / name
     return share
 
 
@@ -74,17 +74,17 @@ def substituted_executables() -> dict[str, frozenset[str]]:
 
 @cache
 def _partly_replaced_packages() -> frozenset[str]:
-    """Return the packages that nodes or modules of Linkwright or of its extensions replace in part."""
+    """Return the packages that Linkwright or one of its extensions replaces in part."""
     nodes = (name for group in ("linkwright.nodes", "linkwright.components") for name in extensions(group))
     return frozenset({*substituted_executables(), *(name.partition("/")[0] for name in nodes)})
 
 
 def is_substitute(share: Path) -> bool:
-    """Return whether a share folder is that of a substitute for a ROS package, such as gazebo_ros.
+    """Return whether a share folder belongs to a substitute for a ROS package.
 
     A substitute contains the launch files that others include, but not the rest of the package.
     """
-    return install_prefix(share) == _IN_PART or share == _share_with_files(share.name)
+    return install_prefix(share) == _PARTIAL_PREFIX or share == _share_with_files(share.name)
 
 
 def substituted_files(name: str, folder: Path) -> dict[str, InstalledFile]:
@@ -92,8 +92,7 @@ def substituted_files(name: str, folder: Path) -> dict[str, InstalledFile]:
 
     The result maps paths in the share folder to files. A launch file that a build generates, such as ros_gz_sim's
     ``gz_sim.launch.py``, starts programs of that build, while the substitute's file starts Linkwright's nodes. Files in
-    the
-    sources take precedence: Linkwright's nodes have the same names, and the user may have edited the files.
+    the sources take precedence: Linkwright's nodes have the same names, and the user may have edited the files.
 
     Args:
         name: the package.
@@ -101,7 +100,7 @@ def substituted_files(name: str, folder: Path) -> dict[str, InstalledFile]:
     """
     text = _text_with_targets(folder)  # checked first, because entry points take longer to read
     share = None if text is None else _share_with_files(name)
-    if text is None or share is None or not _compiles(folder, text):
+    if text is None or share is None or not _is_compiled(folder, text):
         return {}
     ours = {file.relative_to(share).as_posix(): file for file in sorted(share.rglob("*")) if file.is_file()}
     return {
@@ -116,7 +115,7 @@ _COMPILING = ("add_executable", "add_library", "add_module", "add_subdirectory",
 
 
 def _text_with_targets(folder: Path) -> str | None:
-    """Return the text of a package's ``CMakeLists.txt``, or None if it cannot declare compiled targets."""
+    """Return the text of a ``CMakeLists.txt``, or None if it cannot declare compiled targets."""
     try:
         text = (folder / "CMakeLists.txt").read_text(encoding="utf-8", errors="replace")
     except OSError:
@@ -125,7 +124,7 @@ def _text_with_targets(folder: Path) -> str | None:
     return text if any(command in lowered for command in _COMPILING) else None
 
 
-def _compiles(folder: Path, text: str) -> bool:
+def _is_compiled(folder: Path, text: str) -> bool:
     """Return whether a package with this text of its ``CMakeLists.txt`` must be compiled."""
     from linkwright.diagnostics import SourceText
     from linkwright.packages.readers.cmake import read_cmake
@@ -137,10 +136,10 @@ _MARK = os.path.join("", "linkwright", SHARES, "")  # noqa: PTH118 - a part of t
 
 
 def share_of_sources(name: str, folder: Path) -> Path:
-    """Return the share folder of an unbuilt package: its source folder, or a folder of links to the sources.
+    """Return the share folder of an unbuilt package: its source folder, or a folder of links.
 
-    The result is also the source folder if the links cannot be created, for example on a full disk, or on Windows
-    without the permission to create links.
+    If the links cannot be created, the result is the source folder. This happens on a full disk, or on Windows if the
+    user may not create links.
 
     Args:
         name: the package.
@@ -166,7 +165,7 @@ def source_of(path: str) -> str:
 
 
 def _shared(name: str, folder: Path) -> Iterator[tuple[str, InstalledFile]]:
-    """Yield the path in the share folder and the record of each file that a package installs there.
+    """Yield the files that a package installs into its share folder, each with its path there.
 
     Some files whose path is the same in the sources are left out.
     """

@@ -253,13 +253,13 @@ class Admission:
         """Record that a connection has sent a request, so that it is closed only if its slot is needed."""
         entrance = self._strangers.get(served)  # type: ignore[call-overload]
         if entrance is not None:
-            entrance.may_stay()
+            entrance.cancel_deadline()
 
     def admit(self, served: object) -> None:
         """Record that a connection has sent the token, so that no other connection replaces it."""
         entrance = self._strangers.pop(served, None)  # type: ignore[call-overload]
         if entrance is not None:
-            entrance.may_stay()
+            entrance.cancel_deadline()
 
     def opened(self, entrance: Entrance) -> bool:
         """Count a new connection, and return False if it must be refused."""
@@ -296,7 +296,7 @@ class Entrance(asyncio.Protocol):
         for name in _PASSED_ON:  # saves a call for each event
             setattr(self, name, getattr(served, name))
 
-    def may_stay(self) -> None:
+    def cancel_deadline(self) -> None:
         """Cancel the deadline for the connection's first request."""
         if self._deadline is not None:
             self._deadline.cancel()
@@ -304,7 +304,7 @@ class Entrance(asyncio.Protocol):
 
     def end(self) -> None:
         """Abort the connection."""
-        self.may_stay()
+        self.cancel_deadline()
         if self._counted:
             self._counted = False
             self._admission.closed(self)
@@ -325,7 +325,7 @@ class Entrance(asyncio.Protocol):
 
     def connection_lost(self, exc: Exception | None) -> None:
         """Release the slot of the connection."""
-        self.may_stay()
+        self.cancel_deadline()
         if self._counted:
             self._counted = False
             self._admission.closed(self)

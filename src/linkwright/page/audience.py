@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from linkwright.diagnostics.translation import language as language_of_terminal
 from linkwright.diagnostics.translation import language_of
 from linkwright.graph import log_failure
-from linkwright.page.outbox import BULK, TRANSFORMS, InPieces, Line, Outbox, Outgoing, Payload, ScaledData
+from linkwright.page.outbox import BULK, TRANSFORMS, ChunkedFrame, Line, Outbox, Outgoing, Payload, ScaledData
 from linkwright.page.protocol.message import (
     BadMessageError,
     PageMessage,
@@ -81,7 +81,7 @@ _QUIET = 0.3
 """Seconds of an idle line after which a page receives the full data of content that it has only in part."""
 
 
-def language_asked(request: Request) -> str:
+def requested_language(request: Request) -> str:
     """Return the language that a page requests, one of `LANGUAGES`; by default the terminal's."""
     return language_of(request.query.get("language", "")) or language_of_terminal()
 
@@ -110,7 +110,7 @@ class Page:
         self._reported_late = False
         self._opening: list[Payload] = []
         self._completing: asyncio.TimerHandle | None = None
-        self._completion: InPieces | None = None
+        self._completion: ChunkedFrame | None = None
         self._completions = 0
 
     def open(self, opening: Iterable[Payload]) -> None:
@@ -178,7 +178,7 @@ class Page:
 
     def _line_changed(self) -> None:
         self.outbox.hold(self.line.is_full)
-        self._judge_lateness()
+        self._report_lateness()
         if self._completion is not None and self._completion.done:
             self._completed(self._completion)
         room = self.line.room
@@ -196,7 +196,7 @@ class Page:
         elif self._reduced and self._completing is None:
             self._completing = asyncio.get_running_loop().call_later(_QUIET, self._complete)
 
-    def _judge_lateness(self) -> None:
+    def _report_lateness(self) -> None:
         """Notify the page when this program starts or stops being the reason for reduced data."""
         if self._lateness is None and self._reduced:
             self._lateness = Lateness(asyncio.get_running_loop())
@@ -214,14 +214,14 @@ class Page:
         for payload, _ in self._reduced.values():
             if payload.key not in self.outbox:
                 self._completions += 1
-                self._completion = InPieces(payload, self._completions, self._piece)
+                self._completion = ChunkedFrame(payload, self._completions, self._piece)
                 self.outbox.put(payload.key, self._completion)
                 return
 
     def _completes(self, payload: ScaledData) -> bool:
         return self._completion is not None and self._completion.payload is payload
 
-    def _completed(self, completion: InPieces) -> None:
+    def _completed(self, completion: ChunkedFrame) -> None:
         self._completion = None
         if self._reduced.get(completion.key, (None,))[0] is completion.payload:
             del self._reduced[completion.key]

@@ -15,7 +15,7 @@ from threading import RLock
 from typing import Any
 
 
-def _enter_package() -> None:
+def _register_package() -> None:
     """Register an empty aiohttp package, whose ``__init__`` is run on demand."""
     spec = find_spec("aiohttp")
     if spec is None or spec.loader is None or spec.origin is None:
@@ -38,27 +38,27 @@ def _enter_package() -> None:
     sys.modules["aiohttp"] = package
 
 
-def _leave_package() -> None:
+def _unregister_package() -> None:
     """Unregister all modules of aiohttp, so that they are imported again."""
     for name in [module for module in sys.modules if module == "aiohttp" or module.startswith("aiohttp.")]:
         del sys.modules[name]
 
 
 if "aiohttp" not in sys.modules:
-    _enter_package()
+    _register_package()
 
 try:
     from aiohttp import web
     from aiohttp.http_exceptions import HttpProcessingError
 except (AttributeError, ImportError):  # a later version, whose server needs `__init__`
-    _leave_package()
+    _unregister_package()
     from aiohttp import web
     from aiohttp.http_exceptions import HttpProcessingError
 
 __all__ = ["SERVER_LOGGER", "HttpProcessingError", "web"]
 
 
-def _is_the_servers_fault(record: logging.LogRecord) -> bool:
+def _is_server_error(record: logging.LogRecord) -> bool:
     """Return whether a record is logged: not if a malformed request or a disconnect caused the error."""
     error = record.exc_info[1] if record.exc_info else None
     return not isinstance(error, (HttpProcessingError, web.RequestPayloadError, ConnectionError))
@@ -66,4 +66,4 @@ def _is_the_servers_fault(record: logging.LogRecord) -> bool:
 
 SERVER_LOGGER = logging.getLogger(__name__)
 """The logger for each ``web.AppRunner``: aiohttp's own one prints a traceback whenever a client leaves."""
-SERVER_LOGGER.addFilter(_is_the_servers_fault)
+SERVER_LOGGER.addFilter(_is_server_error)

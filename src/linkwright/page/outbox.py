@@ -63,7 +63,7 @@ class ScaledData:
         return self._pack(self._shrink(size))
 
 
-class InPieces:
+class ChunkedFrame:
     """A frame that an outbox sends in chunks, with other payloads between them.
 
     Args:
@@ -211,7 +211,7 @@ _MOST_ON_THE_WAY = 64
 
 
 @dataclass(slots=True)
-class _OnTheWay:
+class _InTransit:
     number: int
     size: int
     sent: float
@@ -240,7 +240,7 @@ class Line:
         self._number = 0
         self._answers = False
         self._shortest = float("inf")
-        self._on_the_way: deque[_OnTheWay] = deque()
+        self._on_the_way: deque[_InTransit] = deque()
         self._hello: float | None = None
 
     @property
@@ -265,7 +265,7 @@ class Line:
         if self._number == 1:
             self._hello = now
         if size >= BULK:
-            self._on_the_way.append(_OnTheWay(self._number, size, now))
+            self._on_the_way.append(_InTransit(self._number, size, now))
         return now
 
     def sent(self, size: int, since: float) -> None:

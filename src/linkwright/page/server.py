@@ -133,8 +133,10 @@ class WebServer:
         application.router.add_get("/mesh/{key}/{path:.+}", self._mesh)
         application.router.add_get("/export/{key}/{name}", self._export, allow_head=False)
         for method, path, take in _UPLOADS:
-            application.router.add_route(method, path, self._shielded(partial(self._upload, take)))
-        application.router.add_post("/export/{key}/{name}", self._shielded(partial(self._upload, self._show_kept)))
+            application.router.add_route(method, path, self._require_token(partial(self._upload, take)))
+        application.router.add_post(
+            "/export/{key}/{name}", self._require_token(partial(self._upload, self._show_own_recording))
+        )
         application.router.add_get("/{path:.+}", self._page_file)
         self._runner = web.AppRunner(
             application,
@@ -293,7 +295,7 @@ class WebServer:
         recording = self._downloads.path(request.match_info["key"])
         if recording is not None:
             self._admit(request)
-            return await _streamed(request, recording)
+            return await _stream_file(request, recording)
         if file is None:
             raise web.HTTPNotFound(text="There is no such file; it can be fetched once.\n")
         self._admit(request)
@@ -322,14 +324,14 @@ class WebServer:
                 raise  # the client has disconnected
             raise web.HTTPServiceUnavailable(text="The program ends.\n") from None
 
-    async def _show_kept(self, uploads: Uploads, request: web.Request) -> web.Response:
+    async def _show_own_recording(self, uploads: Uploads, request: web.Request) -> web.Response:
         """Show a recording that this program made, without an upload."""
         recording = self._downloads.path(request.match_info["key"])
         if recording is None:
             raise web.HTTPNotFound(text="There is no such recording.\n")
         return await uploads.show(request, recording)
 
-    def _shielded(
+    def _require_token(
         self, handler: Callable[[web.Request], Awaitable[web.Response]]
     ) -> Callable[[web.Request], Awaitable[web.StreamResponse]]:
         """Return a handler that calls another one only for requests with the token."""
@@ -343,7 +345,7 @@ class WebServer:
         if not self._gate.is_shown_token(request.query):
             return _without_token()
         shown = await self._viewer()
-        from linkwright.page.audience import Page, language_asked
+        from linkwright.page.audience import Page, requested_language
 
         audience = _audience_of(shown, request)
         if audience.is_full:
@@ -361,7 +363,9 @@ class WebServer:
             await socket.prepare(request)
         if request.transport is not None:
             keep_short(request.transport)
-        page = Page(socket, _own_displays(request), is_here=_is_from_here(request), language=language_asked(request))
+        page = Page(
+            socket, _own_displays(request), is_here=_is_from_here(request), language=requested_language(request)
+        )
         await audience.attend(page, socket)
         return socket
 
@@ -370,7 +374,7 @@ _UPLOADS: tuple[tuple[str, str, Callable[[Uploads, web.Request], Awaitable[web.R
     ("POST", "/recordings", lambda uploads, request: uploads.announce(request)),
     ("PUT", "/recordings/{key}/{number:[0-9]{1,4}}", lambda uploads, request: uploads.take(request)),
     ("POST", "/recordings/{key}", lambda uploads, request: uploads.open(request)),
-    ("DELETE", "/recordings/{key}", lambda uploads, request: uploads.give_up(request)),
+    ("DELETE", "/recordings/{key}", lambda uploads, request: uploads.cancel_upload(request)),
 )
 """Method, address and handler of the requests with which pages upload a recording."""
 
@@ -452,7 +456,7 @@ def _attached(name: str) -> str:
     return f"attachment; filename*=UTF-8''{quote(name)}"
 
 
-async def _streamed(request: web.Request, path: Path) -> web.StreamResponse:
+async def _stream_file(request: web.Request, path: Path) -> web.StreamResponse:
     """Send a file for download in blocks, so that only one block at a time is in memory."""
     try:
         file = await asyncio.to_thread(path.open, "rb")

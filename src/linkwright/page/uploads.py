@@ -20,7 +20,7 @@ import msgspec
 from linkwright.bag.scratch import scratch_folder
 from linkwright.diagnostics import LinkwrightError, Phrase, foreign, in_one_line, phrase
 from linkwright.diagnostics.translation import localized
-from linkwright.page.audience import language_asked
+from linkwright.page.audience import requested_language
 from linkwright.page.http_server import web
 
 if TYPE_CHECKING:
@@ -202,13 +202,13 @@ class Uploads:
         try:
             shown = await self._guests.open(upload.target, upload.scratch)
         except LinkwrightError as error:
-            found = localized(in_one_line(error.diagnostics), language_asked(request))
+            found = localized(in_one_line(error.diagnostics), requested_language(request))
             self._remove(request.match_info["key"])
             return _problem(found)
         self._uploads.pop(request.match_info["key"], None)
         return web.json_response({"recording": shown})
 
-    async def give_up(self, request: web.Request) -> web.Response:
+    async def cancel_upload(self, request: web.Request) -> web.Response:
         """Cancel an upload, and remove the files that have arrived."""
         self._remove(request.match_info["key"])
         return web.Response(status=204)
@@ -251,7 +251,7 @@ class Uploads:
 
 
 def _refused(request: web.Request, message: Phrase) -> web.Response:
-    return _problem(localized(message, language_asked(request)))
+    return _problem(localized(message, requested_language(request)))
 
 
 def _problem(text: str) -> web.Response:

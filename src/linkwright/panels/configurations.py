@@ -38,7 +38,7 @@ from linkwright.page.protocol.configuration import (
 from linkwright.page.protocol.message import ServerMessage
 from linkwright.panels.page_feature import FeatureHost, PageFeature
 from linkwright.rviz.config import file as configuration_file
-from linkwright.rviz.config.locations import RecentFiles, configuration_path, forget_unsaved, list_folder
+from linkwright.rviz.config.locations import RecentFiles, configuration_path, list_folder, remove_recovery_files
 from linkwright.rviz.config.rviz_config import RvizConfig
 from linkwright.rviz.config.schema import MAXIMUM_TEXT
 from linkwright.rviz.displays.catalogue import has_display
@@ -98,7 +98,7 @@ class ConfigurationFeature(PageFeature):
         """Handle a request, or send the reason for refusing it."""
         manager = self.managers.of(page)
         try:
-            _DEEDS[type(message)](self, Request(page, manager, message))
+            _HANDLERS[type(message)](self, Request(page, manager, message))
         except LinkwrightError as error:
             first = error.diagnostics[0]
             where = f" ({first.span.file}:{first.span.line})" if first.span else ""
@@ -214,7 +214,7 @@ class ConfigurationFeature(PageFeature):
                 return
         former = config.path
         config.save(path)
-        forget_unsaved(former, config, self._recent)
+        remove_recovery_files(former, config, self._recent)
         asked.page.send(ConfigurationSaved(str(path)))
         asked.manager.history.saved()
         self._remember(asked.manager, path)
@@ -237,7 +237,7 @@ class ConfigurationFeature(PageFeature):
         self.edited(manager)
 
 
-_DEEDS: dict[type, Callable[..., None]] = {
+_HANDLERS: dict[type, Callable[..., None]] = {
     AddDisplay: ConfigurationFeature._add,
     AskConfigurationText: ConfigurationFeature._ask_text,
     AskDisplayChoices: ConfigurationFeature._ask_displays,
@@ -256,7 +256,7 @@ _DEEDS: dict[type, Callable[..., None]] = {
     Undo: ConfigurationFeature._undo,
 }
 
-ConfigurationFeature.RECEIVES = tuple(_DEEDS)
+ConfigurationFeature.RECEIVES = tuple(_HANDLERS)
 
 
 def _displays_of(manager: VisualizationManager, identities: list[str]) -> list[ViewerDisplay]:

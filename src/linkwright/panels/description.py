@@ -119,7 +119,7 @@ class KnownDescription:
             prefix=self.prefix,
         )
 
-    def changed_from(self, before: KnownDescription | None) -> DescriptionChanged:
+    def changes_since(self, before: KnownDescription | None) -> DescriptionChanged:
         """Return the links and joints that differ from those of the previous description.
 
         The lists are empty if `before` is None.
@@ -179,7 +179,7 @@ class DescriptionFeature(PageFeature):
                 before = self._known.get(display.id)
                 known = self._look_at(display)
                 if known is not None and known is not before:
-                    manager.pages.publish(known.changed_from(before))
+                    manager.pages.publish(known.changes_since(before))
         for gone in self._known.keys() - shown:
             del self._known[gone]
 

@@ -59,7 +59,7 @@ class LiveHistory:
         self._lock = threading.RLock()
         self._fresh: list[tuple[str, int, Any]] = []
         self._stored: History | None = None
-        self._handle.message_filter = self._intake
+        self._handle.message_filter = self._store_if_first
 
     @property
     def history(self) -> History:
@@ -204,7 +204,7 @@ class LiveHistory:
         if not self.live:
             self._give(self._subscriptions(), topic, stamp_ns, data)
 
-    def _intake(self, subscription: Subscription[Any], message: Any) -> bool:
+    def _store_if_first(self, subscription: Subscription[Any], message: Any) -> bool:
         """Store a message, once per topic, and return whether to deliver it to the subscription.
 
         Thread-safe.

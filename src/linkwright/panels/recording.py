@@ -60,7 +60,7 @@ class RecordingFeature(PageFeature):
         self.folder = self.context.folder
         self.left_free = LEFT_FREE
         self._possible = True
-        self._running: _Running | None = None
+        self._running: _CurrentRecording | None = None
         self._saved: float | None = None
         self._saving: asyncio.Task[None] | None = None
         self._timer: asyncio.TimerHandle | None = None
@@ -114,15 +114,17 @@ class RecordingFeature(PageFeature):
             start_parameter_services=False,
         )
         selection = TopicSelection(everything=not topics, every_service=not topics, names=topics)
-        recorder = Recorder(node, selection, writer, guarded=self._guarded)
+        recorder = Recorder(node, selection, writer, guarded=self._guard)
         threshold = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=False)
         jumps = node.get_clock().create_jump_callback(
             threshold, post_callback=lambda _: self._loop.call_soon_threadsafe(self._end_at_reset, recorder)
         )
-        self._running = _Running(node, writer, recorder, jumps, self.context.node.get_clock() if simulated else None)
+        self._running = _CurrentRecording(
+            node, writer, recorder, jumps, self.context.node.get_clock() if simulated else None
+        )
         self._publish_later()
 
-    def _guarded(self, callback: Callable[..., object]) -> Callable[..., object]:
+    def _guard(self, callback: Callable[..., object]) -> Callable[..., object]:
         """Wrap a callback of the recorder's node so that a failed write ends the recording."""
 
         def call(*arguments: Any) -> None:
@@ -290,7 +292,7 @@ class RecordingFeature(PageFeature):
         return RecordingState(self._possible, path, length, size, self._saved, self._problem, self._files)
 
 
-class _Running:
+class _CurrentRecording:
     """A recording in progress; `clock` is the simulation's clock, or None."""
 
     def __init__(

@@ -100,7 +100,7 @@ _POINT_TOOL = "rviz_default_plugins/PublishPoint"
 
 
 @dataclass(slots=True)
-class _Shelf:
+class _ToolSet:
     """The tools of a configuration, and their publishers and goal senders by ID."""
 
     config: ToolsConfig
@@ -119,16 +119,16 @@ class ToolsFeature(PageFeature):
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
-        self._shelves: dict[VisualizationManager, _Shelf] = {}
+        self._shelves: dict[VisualizationManager, _ToolSet] = {}
 
     def start(self) -> None:
         """Create the publishers of the shared configuration's tools."""
         for manager in self.managers.all():
-            self._shelf(manager)
+            self._tool_set(manager)
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
         """Return the tools of the configuration."""
-        return [_tools_message(self._shelf(manager))]
+        return [_tools_message(self._tool_set(manager))]
 
     def manager_closed(self, manager: VisualizationManager) -> None:
         """Destroy the publishers of the manager's tools."""
@@ -139,7 +139,7 @@ class ToolsFeature(PageFeature):
     def receive(self, page: Page, message: Any) -> None:
         """Change or use a tool; messages for removed tools are ignored."""
         manager = self.managers.of(page)
-        shelf = self._shelf(manager)
+        shelf = self._tool_set(manager)
         if isinstance(message, SetToolProperty):
             self._set(page, manager, message)
         elif isinstance(message, AddTool):
@@ -159,24 +159,24 @@ class ToolsFeature(PageFeature):
         for manager in list(self._shelves):
             self.manager_closed(manager)
 
-    def _shelf(self, manager: VisualizationManager) -> _Shelf:
+    def _tool_set(self, manager: VisualizationManager) -> _ToolSet:
         """Return the tools of a manager; they are created again if the configuration was replaced."""
         shelf = self._shelves.get(manager)
         if shelf is None or shelf.config is not manager.config.tools:
             if shelf is not None:
                 self._clear(shelf)
-            shelf = self._shelves[manager] = _Shelf(manager.config.tools)
+            shelf = self._shelves[manager] = _ToolSet(manager.config.tools)
             for entry in shelf.config.entries:
                 self._try_announce(shelf, entry)
         return shelf
 
-    def _try_announce(self, shelf: _Shelf, entry: ToolEntry) -> None:
+    def _try_announce(self, shelf: _ToolSet, entry: ToolEntry) -> None:
         try:
             self._announce(shelf, entry)
         except InvalidTopicNameError as error:
             self.context.node.get_logger().error(f"{tool_name(entry.cls)}: {error}")
 
-    def _clear(self, shelf: _Shelf) -> None:
+    def _clear(self, shelf: _ToolSet) -> None:
         for identity in [*shelf.publishers, *shelf.goals]:
             self._withdraw(shelf, identity)
 
@@ -205,7 +205,7 @@ class ToolsFeature(PageFeature):
         before = entry.properties.get(*path)
         try:
             entry.properties.check(path, message.value)
-            shelf.config.list_all()
+            shelf.config.write_defaults()
             value = entry.properties.set(path, message.value)
             if path[0] == _TOPIC:
                 self._announce(shelf, entry)
@@ -219,7 +219,7 @@ class ToolsFeature(PageFeature):
 
     # --- publishers and messages ---------------------------------------------------------------------------------
 
-    def _announce(self, shelf: _Shelf, entry: ToolEntry) -> None:
+    def _announce(self, shelf: _ToolSet, entry: ToolEntry) -> None:
         """Create a tool's publisher or goal sender for its current topic, and destroy the former one."""
         kind = TOOL_KINDS.get(entry.cls)
         if kind is not None and kind.action is not None:
@@ -236,7 +236,7 @@ class ToolsFeature(PageFeature):
         self._withdraw(shelf, entry.id)
         shelf.publishers[entry.id] = made
 
-    def _withdraw(self, shelf: _Shelf, identity: str) -> None:
+    def _withdraw(self, shelf: _ToolSet, identity: str) -> None:
         publisher = shelf.publishers.pop(identity, None)
         if publisher is not None:
             self.context.node.destroy_publisher(publisher)
@@ -315,7 +315,7 @@ def _angle(pose: list[float]) -> float:
     return 2 * math.atan2(pose[5], pose[6])
 
 
-def _tools_message(shelf: _Shelf) -> Tools:
+def _tools_message(shelf: _ToolSet) -> Tools:
     return Tools(
         [
             Tool(entry.id, entry.cls, tool_name(entry.cls), entry.cls in TOOL_KINDS, entry.properties.rows())

@@ -37,11 +37,11 @@ class ImageCompressor:
         smaller than the result is also returned unchanged.
         """
         try:
-            return self._compressed(frame, size)
+            return self._compress(frame, size)
         except Exception:  # noqa: BLE001 - a file from a message may be broken in any way
             return frame
 
-    def _compressed(self, frame: ImageFrame, size: int) -> ImageFrame:
+    def _compress(self, frame: ImageFrame, size: int) -> ImageFrame:
         image = _opened(frame)
         width, height = frame.width or image.width, frame.height or image.height
         step = self._steps.get(size, 0)

@@ -202,7 +202,7 @@ class _Builder:
         if image:
             shape.texture = self._located(link, image, IMAGE_TYPES)
         workflow = material.pbr.metal if material and material.pbr else None
-        if workflow and _reflects(workflow):
+        if workflow and _has_surface(workflow):
             urls = [self._located(link, file, IMAGE_TYPES) if file else None for file in _maps(workflow)]
             shape.surface = Surface(workflow.roughness, workflow.metalness, *urls)
 
@@ -224,7 +224,7 @@ def _maps(workflow: Workflow) -> tuple[str, ...]:
     return (*reflecting, workflow.emissive_map, workflow.ambient_occlusion_map)
 
 
-def _reflects(workflow: Workflow) -> bool:
+def _has_surface(workflow: Workflow) -> bool:
     """Return whether a material sets more than a colour image: other images, roughness or metalness."""
     usual = Workflow()
     return any(_maps(workflow)) or (workflow.roughness, workflow.metalness) != (usual.roughness, usual.metalness)

@@ -50,7 +50,7 @@ _REMEMBERED = 4096
 """The memory of a kind of element is cleared after this many different elements."""
 
 
-def is_remembered(rule: ElementRule) -> bool:
+def is_cached(rule: ElementRule) -> bool:
     """Return whether elements of a rule are cached by their attributes.
 
     Such elements have only attributes, and at least one of these is not a plain text.
@@ -80,7 +80,7 @@ def flat_source(rule: ElementRule, version: Version) -> str:
     lines.append("    return explain(element, owner, report)")
     if rule.check is not None:
         lines.append("value = check(value, element, owner, report)")
-    if is_remembered(rule):
+    if is_cached(rule):
         lines += ["if report.count == before:", f"    if len(memory) >= {_REMEMBERED}:", "        memory.clear()"]
         lines.append("    memory[key or (*given, *given.values())] = value")
     return _function([*lines, "return value"], "key=()")
@@ -136,7 +136,7 @@ def _attribute(name: str, attribute: AttributeRule, version: Version) -> Iterato
 
 def _child(name: str, child: ElementRule) -> Iterator[str]:
     read = f"{name}_read(child, owner, report)"
-    if is_remembered(child):
+    if is_cached(child):
         read = f"{name}_memory.get(key := (*inner, *inner.values())) or {name}_read(child, owner, report, key)"
     yield f"if tag == {child.tag!r}:"
     if child.many:
@@ -299,12 +299,12 @@ def _nested_reader(rule: ElementRule, version: Version) -> ElementReader:
     for index, child in enumerate(rule.children):
         if child.since <= version:
             scope[f"child{index}_rule"], scope[f"child{index}_absent"] = child, child.default
-            scope[f"child{index}_read"] = _compiled_later(f"child{index}", child, version, scope)
+            scope[f"child{index}_read"] = _lazy_reader(f"child{index}", child, version, scope)
             scope[f"child{index}_memory"] = {}
     return ElementReader(_compiled(nested_source(rule, version), rule, scope), {})
 
 
-def _compiled_later(name: str, rule: ElementRule, version: Version, scope: dict[str, Any]) -> Read:
+def _lazy_reader(name: str, rule: ElementRule, version: Version, scope: dict[str, Any]) -> Read:
     """Return a reader that compiles and replaces itself when it reads its first element.
 
     Most robots use only half of the language.

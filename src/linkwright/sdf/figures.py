@@ -32,7 +32,7 @@ _PERSON: tuple[tuple[Capsule | Sphere, Vector3, Material], ...] = (
 """Legs, trunk and head of a person of 1.8 m, from the hips, which are 1 m above the feet: sizes and places in m."""
 
 
-def figure_of(actor: Actor, hips: Vector3 | None = (0.0, 0.0, 0.0)) -> Model:
+def actor_model(actor: Actor, hips: Vector3 | None = (0.0, 0.0, 0.0)) -> Model:
     """Return the model of an actor: the shapes of its links, and its skin.
 
     Args:
@@ -57,7 +57,7 @@ def figure_of(actor: Actor, hips: Vector3 | None = (0.0, 0.0, 0.0)) -> Model:
     return Model(actor.name, static=True, links=tuple(links), element=actor.element)
 
 
-def road_of(road: Road) -> Model:
+def road_model(road: Road) -> Model:
     """Return the model of a road: a strip along its points, whose top is at the height of the points."""
     visuals: list[Visual] = []
     for start, end in zip(road.points, road.points[1:], strict=False):

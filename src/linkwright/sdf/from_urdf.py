@@ -80,7 +80,7 @@ class _Converter:
     def model(self) -> Model:
         bodies = bodies_of(self._robot, self._is_lumped)
         if self._lumps:
-            bodies = self._with_mass(bodies)
+            bodies = self._remove_massless(bodies)
         parts = [part for body in bodies for part in body.parts]
         extensions = {part.link.name: self._extensions.link(part.link) for part in parts}
         joints = [self._joint(body, body.joint) for body in bodies if body.joint is not None]
@@ -103,7 +103,7 @@ class _Converter:
             and not self._extensions.becomes_revolute(joint)
         )
 
-    def _with_mass(self, bodies: list[Body]) -> list[Body]:
+    def _remove_massless(self, bodies: list[Body]) -> list[Body]:
         """Return the bodies that have mass; as in gz, descendants of massless bodies are also left out."""
         left_out: set[str] = set()
         kept = []
@@ -131,7 +131,7 @@ class _Converter:
         if self._lumps:
             return
         links = [body.parts[0].link for body in bodies if body.joint is None or body.joint.type != "fixed"]
-        without = [link for link in links if link.inertial is None and self._weightless(link) is None]
+        without = [link for link in links if link.inertial is None and self._tiny_inertial(link) is None]
         element = next((link.element for link in without if link.element is not None), None)
         if element is not None:
             message = phrase(
@@ -151,7 +151,7 @@ class _Converter:
         return replace(
             extension,
             pose=self._pose(body),
-            inertial=_inertial(body.parts) or self._weightless(link),
+            inertial=_inertial(body.parts) or self._tiny_inertial(link),
             visuals=(*_visuals(body, extensions), *extension.visuals),
             collisions=(*_collisions(body, extensions), *extension.collisions),
             sensors=(*extension.sensors, *sensors),
@@ -163,7 +163,7 @@ class _Converter:
             element=link.element,
         )
 
-    def _weightless(self, link: urdf.Link) -> Inertial | None:
+    def _tiny_inertial(self, link: urdf.Link) -> Inertial | None:
         """Return a tiny inertial for a massless link that is fixed to links with mass; otherwise None.
 
         None is also returned if links are lumped.
@@ -177,7 +177,7 @@ class _Converter:
             return RawPose()
         if body.joint.type in _TYPES and body.joint.name not in self._robot.links:
             return RawPose(relative_to=body.joint.name)
-        return _from_parent(body)
+        return _pose_in_parent(body)
 
     def _joint(self, body: Body, joint: urdf.Joint) -> Joint | None:
         if joint.type not in _TYPES:
@@ -204,7 +204,7 @@ class _Converter:
             type=kind,
             parent=body.parent,
             child=body.name,
-            pose=_from_parent(body),
+            pose=_pose_in_parent(body),
             axis=axis,
             element=joint.element,
         )
@@ -236,7 +236,7 @@ class _Converter:
                 self._report.warning("SDF171", message, sensor.element, hint=hint)
 
 
-def _from_parent(body: Body) -> RawPose:
+def _pose_in_parent(body: Body) -> RawPose:
     return RawPose(body.pose, MODEL if body.parent == WORLD else body.parent)
 
 
@@ -255,9 +255,9 @@ def _placed(pose: Pose, part: Part) -> RawPose:
 def _inertial(parts: Sequence[Part]) -> Inertial | None:
     first = parts[0].link.inertial
     if any(part.link.inertial for part in parts[1:]):
-        from linkwright.sdf.lumping import lumped_inertial  # delays the import of numpy
+        from linkwright.sdf.lumping import lump_inertials  # delays the import of numpy
 
-        return lumped_inertial(parts)
+        return lump_inertials(parts)
     if first is None:
         return None
     tensor = Inertia(first.ixx, first.iyy, first.izz, first.ixy, first.ixz, first.iyz)
@@ -323,14 +323,14 @@ def _material(written: urdf.Material | None, extension: Material | None) -> Mate
     found = extension or Material()
     if written.rgba is not None:
         red, green, blue, alpha = written.rgba
-        color = (_brighter(red), _brighter(green), _brighter(blue), alpha)
+        color = (_brighten(red), _brighten(green), _brighten(blue), alpha)
         found = replace(found, ambient=color, diffuse=color)
     if written.texture is not None and found.pbr is None:
         found = replace(found, pbr=Pbr(metal=Workflow(albedo_map=written.texture)))
     return found
 
 
-def _brighter(part: float) -> float:
+def _brighten(part: float) -> float:
     return min(max(part * _BRIGHTER, 0.0), 1.0)
 
 

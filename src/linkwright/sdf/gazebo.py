@@ -106,7 +106,7 @@ class Extensions:
         """
         whole = _like(robot.element, "model", robot.name)
         for gazebo in self._by_name.get("", ()):
-            whole.children += _blobs(gazebo)
+            whole.children += _sdf_children(gazebo)
             self._add_words(whole, gazebo, _MODEL_WORDS, MODEL)
         model: Model = read_element(whole, MODEL, self._report)
         return model
@@ -116,7 +116,7 @@ class Extensions:
         whole = _like(link.element, "link", link.name)
         visual, collision = _like(link.element, "visual", link.name), _like(link.element, "collision", link.name)
         for gazebo in self._by_name.get(link.name, ()):
-            whole.children += _blobs(gazebo)
+            whole.children += _sdf_children(gazebo)
             for shape, words, rule in ((visual, _VISUAL_WORDS, VISUAL), (collision, _COLLISION_WORDS, COLLISION)):
                 for element in gazebo.elements(shape.tag):
                     _merge(shape, element)
@@ -136,7 +136,7 @@ class Extensions:
         _put(whole, "child", joint.child, whole)
         for gazebo in self._by_name.get(joint.name, ()):
             if joint.name not in robot.links:
-                whole.children += map(_copied, _blobs(gazebo))
+                whole.children += map(_copied, _sdf_children(gazebo))
             self._add_words(whole, gazebo, _JOINT_WORDS, JOINT)
         found: Joint = read_element(whole, JOINT, self._report)
         return found
@@ -154,7 +154,7 @@ class Extensions:
 
     def _is_true(self, joint: urdf.Joint, word: str) -> bool:
         elements = (element for gazebo in self._by_name.get(joint.name, ()) for element in gazebo.elements(word))
-        return any(_text_of(element).casefold() in _TRUE for element in elements)
+        return any(_tag_value(element).casefold() in _TRUE for element in elements)
 
     def _add_words(self, whole: Element, gazebo: Element, words: _Words, rule: ElementRule) -> None:
         """Add the SDF elements for the old tags in `gazebo` to an element.
@@ -163,7 +163,7 @@ class Extensions:
         """
         for word in gazebo.elements():
             for path in words.get(word.tag, ()):
-                place, text = _rule_at(rule, path), _text_of(word)
+                place, text = _rule_at(rule, path), _tag_value(word)
                 assert place.text is not None
                 if place.text.type is TRUTH:
                     text = _truth(word.tag, text)
@@ -184,7 +184,7 @@ def _like(element: Element | None, tag: str, name: str) -> Element:
     return Element(tag, {"name": name}, element.source, element.offset, element.origin)
 
 
-def _blobs(gazebo: Element) -> Iterator[Element]:
+def _sdf_children(gazebo: Element) -> Iterator[Element]:
     """Yield the child elements that are already SDF."""
     return (element for element in gazebo.elements() if element.tag not in _WORDS and element.tag not in _SHAPES)
 
@@ -223,7 +223,7 @@ def _with_text(word: Element, text: str) -> Element:
     return element
 
 
-def _text_of(word: Element) -> str:
+def _tag_value(word: Element) -> str:
     """Return the value of an old tag, from its attribute ``value`` or its text."""
     return word.attributes.get("value", word.text()).strip()
 

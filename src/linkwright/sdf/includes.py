@@ -163,7 +163,7 @@ class _Resolver:
         sdf = reading.sdf
         if sdf.models:
             model = self.model(sdf.models[0], found, (*chain, path))
-            return _as_included(model, include)
+            return _apply_include(model, include)
         if sdf.lights or sdf.actors:
             entity: Light | Actor = sdf.lights[0] if sdf.lights else sdf.actors[0]
             return replace(entity, name=include.name or entity.name, pose=include.pose or entity.pose)
@@ -217,7 +217,7 @@ class _Resolver:
         self.diagnostics.append(Diagnostic(code, message, span, severity, hint=hint, source=source))
 
 
-def _as_included(model: Model, include: Include) -> Model:
+def _apply_include(model: Model, include: Include) -> Model:
     """Return a model with the changes of its include."""
     return replace(
         model,

@@ -14,7 +14,7 @@ from linkwright.geometry.single import Vector3
 from linkwright.schema import AttributeRule, ElementRule
 from linkwright.sdf.poses import AT_ORIGIN, MODEL, POSE, RawPose
 from linkwright.sdf.sensors import SENSOR, Sensor
-from linkwright.sdf.values import NUMBER, TEXT, TRUTH, VECTOR3, choice, name_of, object_rule, unwritten, value
+from linkwright.sdf.values import NUMBER, TEXT, TRUTH, VECTOR3, choice, name_of, never_written, object_rule, value
 from linkwright.xmltree import Element
 
 JOINT_TYPES = (
@@ -194,7 +194,7 @@ def _axis_rule(tag: str, meaning: str) -> ElementRule:
             TRUTH,
             "whether the direction is in the frame of the model, up to SDF 1.6",
             default="false",
-            get=unwritten,
+            get=never_written,
         ),
         value("initial_position", NUMBER, "where the joint begins", "rad or m", default="0"),
         object_rule(
@@ -261,7 +261,7 @@ JOINT = ElementRule(
             NUMBER,
             "the older word for the pitch of a screw, with the other sign",
             "rad/m",
-            get=unwritten,
+            get=never_written,
         ),
         value(
             "gearbox_ratio",

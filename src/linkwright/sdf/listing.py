@@ -10,7 +10,7 @@ from linkwright.sdf.models import Model
 from linkwright.sdf.worlds import Sdf, World
 
 
-def sdf_text(sdf: Sdf) -> str:
+def list_contents(sdf: Sdf) -> str:
     """Return a list of models, lights and actors, one per line, indented by two spaces per level."""
     lines: list[str] = []
     for world in sdf.worlds:

@@ -16,7 +16,7 @@ from linkwright.sdf.poses import RawPose
 from linkwright.urdf import model as urdf
 
 
-def lumped_inertial(parts: Sequence[Part]) -> Inertial | None:
+def lump_inertials(parts: Sequence[Part]) -> Inertial | None:
     """Return the combined mass properties of a body's parts, or None if no part has any.
 
     The axes of the inertia tensor are the axes of the first part's mass properties, or of the body if the first part

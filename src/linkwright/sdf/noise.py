@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from linkwright.schema import AttributeRule, ElementRule
-from linkwright.sdf.values import NUMBER, TEXT, object_rule, unwritten, value
+from linkwright.sdf.values import NUMBER, TEXT, never_written, object_rule, value
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +76,7 @@ def noise_rule() -> ElementRule:
         "noise on the value",
         (AttributeRule("type", TEXT, "none, gaussian or gaussian_quantized", default=""),),
         (
-            value("type", TEXT, "the kind of noise, up to SDF 1.4", default="", field="old_type", get=unwritten),
+            value("type", TEXT, "the kind of noise, up to SDF 1.4", default="", field="old_type", get=never_written),
             *_NOISE_PARTS,
         ),
         make=_noise_of,
@@ -86,7 +86,7 @@ def noise_rule() -> ElementRule:
     )
 
 
-def around_noise(tag: str, meaning: str, target: str = "") -> ElementRule:
+def wrapped_noise_rule(tag: str, meaning: str, target: str = "") -> ElementRule:
     """Return the rule of an element that contains only ``<noise>``, such as ``<x>``."""
     inside = replace(noise_rule(), get=_inner)
     return object_rule(_inner, tag, meaning, inside, default=NO_NOISE, field=target or tag)
@@ -96,7 +96,7 @@ def _inner(noise: Noise) -> Noise:
     return noise
 
 
-def noise_xyz(tag: str, meaning: str, absent: NoiseXyz | None = NO_NOISE_XYZ) -> ElementRule:
+def noise_xyz_rule(tag: str, meaning: str, absent: NoiseXyz | None = NO_NOISE_XYZ) -> ElementRule:
     """Return the rule of an element with noise for x, y and z; `absent` is the default."""
-    parts = (around_noise("x", "along x"), around_noise("y", "along y"), around_noise("z", "along z"))
+    parts = (wrapped_noise_rule("x", "along x"), wrapped_noise_rule("y", "along y"), wrapped_noise_rule("z", "along z"))
     return object_rule(NoiseXyz, tag, meaning, *parts, default=absent)

@@ -144,7 +144,7 @@ class Optics:
         """Return the columns and rows in pixels, shape (n, 2), of points, shape (n, 3) with z > 0."""
         x, y = points[:, 0] / points[:, 2], points[:, 1] / points[:, 2]
         if self.distortion is not None:
-            x, y = distorted(self.distortion, x, y)
+            x, y = distort(self.distortion, x, y)
         placed: Array = np.stack([x * self.fx + self.cx, y * self.fy + self.cy], axis=-1)
         return placed
 
@@ -165,7 +165,7 @@ def optics_of(camera: Camera) -> Optics:
     return Optics(width, height, *place, nearest, farthest, given if lossy else None)
 
 
-def distorted(lens: Distortion, x: Array, y: Array) -> tuple[Array, Array]:
+def distort(lens: Distortion, x: Array, y: Array) -> tuple[Array, Array]:
     """Return x and y at z = 1 after the distortion of a lens."""
     square = x * x + y * y
     radial = 1 + square * (lens.k1 + square * (lens.k2 + square * lens.k3))
@@ -181,7 +181,7 @@ def undistorted(lens: Distortion, x: Array, y: Array) -> tuple[Array, Array]:
     """
     across, down = x.copy(), y.copy()
     for _ in range(_TURNS):
-        there = distorted(lens, across, down)
+        there = distort(lens, across, down)
         across, down = across + (x - there[0]), down + (y - there[1])
     wide = (np.abs(across) < 10) & (np.abs(down) < 10)  # The comparison is false for NaN.
     return np.where(wide, across, x), np.where(wide, down, y)

@@ -98,12 +98,12 @@ def _places(population: Population) -> Iterator[Vector3]:
             row, column = divmod(index, distribution.columns)
             yield column * x, row * y, 0.0
     elif population.box is not None:
-        yield from _in_box(distribution.type, count, population.box, chance)
+        yield from _positions_in_box(distribution.type, count, population.box, chance)
     elif population.cylinder is not None and distribution.type not in _AXES:
-        yield from _in_cylinder(distribution.type, count, population.cylinder, chance)
+        yield from _positions_in_cylinder(distribution.type, count, population.cylinder, chance)
 
 
-def _in_box(kind: str, count: int, box: Box, chance: Random) -> Iterator[Vector3]:
+def _positions_in_box(kind: str, count: int, box: Box, chance: Random) -> Iterator[Vector3]:
     x, y, z = box.size
     columns = max(1, round(sqrt(count * x / y))) if x > 0 and y > 0 else 1
     rows = -(-count // columns)
@@ -120,7 +120,7 @@ def _in_box(kind: str, count: int, box: Box, chance: Random) -> Iterator[Vector3
             yield middle[0], middle[1], middle[2]
 
 
-def _in_cylinder(kind: str, count: int, cylinder: Cylinder, chance: Random) -> Iterator[Vector3]:
+def _positions_in_cylinder(kind: str, count: int, cylinder: Cylinder, chance: Random) -> Iterator[Vector3]:
     for index in range(count):
         if kind == "random":
             angle, radius = chance.uniform(0, 2 * pi), chance.uniform(0, cylinder.radius)

@@ -8,7 +8,7 @@ from typing import Any
 from linkwright.geometry.single import IDENTITY_POSE, Pose
 from linkwright.schema import UNREADABLE, AttributeRule, ElementRule, Report
 from linkwright.sdf.values import POSE as POSE_NUMBERS
-from linkwright.sdf.values import TEXT, TRUTH, choice, pose_of, unwritten
+from linkwright.sdf.values import TEXT, TRUTH, choice, never_written, pose_of
 from linkwright.xmltree import Element
 
 WORLD = "world"
@@ -60,8 +60,8 @@ POSE = ElementRule(
             "the frame, link, joint or model in which the pose is given",
             default="",
         ),
-        AttributeRule("frame", TEXT, "the name of relative_to before SDF 1.7", default="", get=unwritten),
-        AttributeRule("degrees", TRUTH, "whether the angles are in degrees", default="false", get=unwritten),
+        AttributeRule("frame", TEXT, "the name of relative_to before SDF 1.7", default="", get=never_written),
+        AttributeRule("degrees", TRUTH, "whether the angles are in degrees", default="false", get=never_written),
         AttributeRule(
             "rotation_format",
             choice("euler_rpy", "quat_xyzw"),

@@ -145,7 +145,7 @@ def read_element(element: Element, rule: ElementRule, report: SdfReport) -> Any:
     Check the element with `is_too_deep` first.
     """
     found = reader_of(rule, NEWEST).read(element, element, report)
-    flat = _is_flat(element)
+    flat = _allows_separators(element)
     known = list(_known(element, rule))
     static_links = links_of_static_models(each for each, _ in known)
     for each, each_rule in known:
@@ -153,7 +153,7 @@ def read_element(element: Element, rule: ElementRule, report: SdfReport) -> Any:
         unread = [
             child
             for child in each.elements()
-            if child.tag not in each_rule.child_rules and not _is_let_be(child, each_rule)
+            if child.tag not in each_rule.child_rules and not _is_ignored(child, each_rule)
         ]
         report.unknown_elements(unread, each_rule, [changes_nothing(child, each, static_links) for child in unread])
     return found
@@ -217,7 +217,7 @@ def _known(root: Element, rule: ElementRule) -> Iterator[tuple[Element, ElementR
         waiting.extend(reversed(inner))
 
 
-def _is_let_be(element: Element, rule: ElementRule) -> bool:
+def _is_ignored(element: Element, rule: ElementRule) -> bool:
     """Return whether an unknown element is not reported.
 
     This applies to an element with a prefix, and to an SDF element that has no effect here.
@@ -226,7 +226,7 @@ def _is_let_be(element: Element, rule: ElementRule) -> bool:
     return ":" in tag or tag in WITHOUT_EFFECT.get(rule.tag, ()) or (tag == _FRAME and POSE in rule.children)
 
 
-def _is_flat(root: Element) -> bool:
+def _allows_separators(root: Element) -> bool:
     """Return whether names may contain '::' in the file's version.
 
     Up to SDF 1.7, the parts of an included model became parts of the including model, with such names.

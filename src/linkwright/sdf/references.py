@@ -56,7 +56,7 @@ def _check(owner: World | Model, frames: Frames) -> Iterator[Diagnostic]:
             )
     for joint in owner.joints:
         yield from _joint(joint, frames)
-    yield from _circles((*owner.frames, *links, *owner.joints, *owner.models), frames)
+    yield from _check_cycles((*owner.frames, *links, *owner.joints, *owner.models), frames)
     for model in owner.models:
         if frames.named.get(model.name) is model:
             yield from _check(model, frames.inside(model.name))
@@ -104,11 +104,11 @@ def _pose(pose: RawPose | None, element: Element | None, frames: Frames) -> Iter
     yield _unknown(written, attribute, pose.relative_to, frames)
 
 
-def _circles(parts: tuple[Frame | Link | Joint | Model, ...], frames: Frames) -> Iterator[Diagnostic]:
+def _check_cycles(parts: tuple[Frame | Link | Joint | Model, ...], frames: Frames) -> Iterator[Diagnostic]:
     """Yield a finding for each cycle of frames whose poses are relative to each other."""
     reported: set[frozenset[str]] = set()
     for part in parts:
-        circle = _circle_of(part.name, frames)
+        circle = _find_cycle(part.name, frames)
         if not circle or frozenset(circle) in reported:
             continue
         reported.add(frozenset(circle))
@@ -122,7 +122,7 @@ def _circles(parts: tuple[Frame | Link | Joint | Model, ...], frames: Frames) ->
         )
 
 
-def _circle_of(name: str, frames: Frames) -> tuple[str, ...]:
+def _find_cycle(name: str, frames: Frames) -> tuple[str, ...]:
     """Return the cycle of frames on which the pose of a frame depends; empty if there is none."""
     try:
         frames.pose(name)

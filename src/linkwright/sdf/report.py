@@ -9,7 +9,7 @@ from typing import Any
 from linkwright.diagnostics import Note, Phrase, Severity, counted, did_you_mean, joined, nearest, phrase, term
 from linkwright.schema import UNREADABLE, AttributeRule, ElementRule
 from linkwright.sdf.poses import WORLD
-from linkwright.sdf.unread import homes_of
+from linkwright.sdf.unread import allowed_parents
 from linkwright.sdf.values import (
     COUNTS,
     INTEGER,
@@ -18,8 +18,8 @@ from linkwright.sdf.values import (
     TRUTH,
     VECTOR2,
     VECTOR3,
-    beginning_of_vector,
     leading_number,
+    leading_numbers,
     numbers,
 )
 from linkwright.urdf.report import Findings
@@ -75,12 +75,12 @@ class SdfReport(Findings):
         """
         inside = attribute is rule.text
         text = element.text().strip() if inside else element.attributes[attribute.name]
-        message, hint = _explained(_place(element, rule, attribute, owner), text, attribute, element)
+        message, hint = _explain_value(_place(element, rule, attribute, owner), text, attribute, element)
         taken = leading_number(text) if attribute.type in (NUMBER, INTEGER) else None
         if taken is not None and isfinite(taken):
             self.warning("SDF121", message, element, None if inside else attribute.name, hint=hint)
             return int(taken) if attribute.type is INTEGER else taken
-        if attribute.type in (VECTOR2, VECTOR3) and (begun := beginning_of_vector(text, COUNTS[attribute.type])):
+        if attribute.type in (VECTOR2, VECTOR3) and (begun := leading_numbers(text, COUNTS[attribute.type])):
             self.warning("SDF121", message, element, None if inside else attribute.name, hint=hint)
             return begun
         if self.is_of_classic and attribute.type in COUNTS and (filled := _filled(text, COUNTS[attribute.type])):
@@ -139,7 +139,7 @@ class SdfReport(Findings):
                 self._unread([element], rule, severity=Severity.INFO)
                 continue
             if hint is None:
-                homes = [f"<{home}>" for home in homes_of(element.tag) if home != rule.tag]
+                homes = [f"<{home}>" for home in allowed_parents(element.tag) if home != rule.tag]
                 hint = phrase("it belongs directly in {listed}", listed=" or ".join(homes)) if homes else None
             if hint is not None:
                 self._unread([element], rule, hint)
@@ -209,11 +209,13 @@ def _place(element: Element, rule: ElementRule, attribute: AttributeRule, owner:
     return place if owner is element else phrase("{place} of {owner}", place=place, owner=described(owner))
 
 
-def _explained(place: Phrase, text: str, attribute: AttributeRule, element: Element) -> tuple[Phrase, Phrase | None]:
+def _explain_value(
+    place: Phrase, text: str, attribute: AttributeRule, element: Element
+) -> tuple[Phrase, Phrase | None]:
     """Return the message and the hint (or None) for a text that is not a valid value of an attribute."""
     values = {"place": place, "value": text}
     if attribute.type in COUNTS:
-        return _miscounted(values, text, COUNTS[attribute.type], element)
+        return _explain_numbers(values, text, COUNTS[attribute.type], element)
     if attribute.type is TRUTH:
         return phrase("{place} is neither true nor false: '{value}'", **values), phrase("write true or false")
     if attribute.type in (NUMBER, TIME):
@@ -225,7 +227,7 @@ def _explained(place: Phrase, text: str, attribute: AttributeRule, element: Elem
     return phrase("{place} is not known: '{value}'", **values), hint
 
 
-def _miscounted(values: dict[str, Any], text: str, count: int, element: Element) -> tuple[Phrase, Phrase | None]:
+def _explain_numbers(values: dict[str, Any], text: str, count: int, element: Element) -> tuple[Phrase, Phrase | None]:
     is_quaternion = element.attributes.get("rotation_format") == "quat_xyzw"
     count += is_quaternion
     try:

@@ -112,7 +112,7 @@ class ResourceFinder:
         if not colon:
             return self._plain(address, beside)
         if scheme == "model":
-            return self._in_folders(address, unquote(rest).lstrip("/"), beside)
+            return self._find_model_uri(address, unquote(rest).lstrip("/"), beside)
         if scheme in ("http", "https"):
             return self._cached(address)
         if scheme == "file" and absolute_path(f"//{rest}") is None:
@@ -164,7 +164,7 @@ class ResourceFinder:
         ):
             with suppress(OSError):
                 for file in sorted(folder.iterdir()):
-                    if file.suffix in _WORLDS and file.is_file() and _holds_world(file):
+                    if file.suffix in _WORLDS and file.is_file() and _contains_world(file):
                         found.setdefault(file.stem, file)
         return found
 
@@ -214,7 +214,7 @@ class ResourceFinder:
         found = next((place for place in places if place.exists()), None)
         if found is not None:
             return found
-        cased = next(filter(None, map(_in_other_case, places)), None)
+        cased = next(filter(None, map(_find_in_other_case, places)), None)
         hint = phrase(
             "add the folder that '{path}' starts from to {variable}", path=path, variable=SEARCH_VARIABLES[-1]
         )
@@ -223,7 +223,7 @@ class ResourceFinder:
         severity = Severity.INFO if path.startswith(_OF_GAZEBO) and cased is None else Severity.WARNING
         return Missing(phrase("there is no '{path}' on the search path", path=address), hint, severity)
 
-    def _in_folders(self, address: str, path: str, beside: Path) -> Path | Missing:
+    def _find_model_uri(self, address: str, path: str, beside: Path) -> Path | Missing:
         if not path:
             return Missing(phrase("'{uri}' names no model", uri=address), phrase("write model://MODEL"))
         if beside not in self._near:
@@ -317,10 +317,10 @@ def model_file(folder: Path) -> Path | Missing:
     if path.is_file():
         return path
     template = next((path for path in sorted(folder.glob("*.sdf.*")) if path.suffix in _TEMPLATES), None)
-    return _no_file(path) if template is None else _made_from(template, path)
+    return _no_file(path) if template is None else _missing_template_output(template, path)
 
 
-def _holds_world(file: Path) -> bool:
+def _contains_world(file: Path) -> bool:
     """Return whether the bytes of a file contain the tag of a world."""
     return b"<world" in file.read_bytes()
 
@@ -392,14 +392,14 @@ def _is_ours(folder: Path) -> bool:
     return folder.is_relative_to(_SHIPPED) or (shipped is not None and folder.absolute().is_relative_to(shipped))
 
 
-def _in_other_case(path: Path) -> Path | None:
+def _find_in_other_case(path: Path) -> Path | None:
     """Return a file whose name differs from a missing file's name only in case, or None if there is none."""
     with suppress(OSError):
         return next((entry for entry in path.parent.iterdir() if entry.name.casefold() == path.name.casefold()), None)
     return None
 
 
-def _made_from(template: Path, path: Path) -> Missing:
+def _missing_template_output(template: Path, path: Path) -> Missing:
     hint = phrase("the build creates it from '{name}'", name=template.name)
     return Missing(phrase("there is no '{path}'", path=str(path)), hint, Severity.INFO)
 
@@ -409,7 +409,7 @@ def _no_file(path: Path) -> Missing:
         (entry for entry in (path.with_name(path.name + end) for end in _TEMPLATES) if entry.is_file()), None
     )
     if template is not None:
-        return _made_from(template, path)
+        return _missing_template_output(template, path)
     hint = None
     with suppress(OSError):
         kind = _kind(path)

@@ -16,7 +16,7 @@ from linkwright.sdf.states import ModelState
 from linkwright.sdf.worlds import World
 
 
-def as_saved(world: World) -> World:
+def with_saved_state(world: World) -> World:
     """Return a world with its last saved state applied; unchanged if there is no saved state.
 
     The includes of the world must have been resolved.
@@ -32,7 +32,7 @@ def as_saved(world: World) -> World:
     poses = {each.name: each.pose for each in state.lights if each.pose is not None}
     return replace(
         world,
-        models=tuple(_restored(model, placed.get(model.name), _place(frames, model)) for model in models),
+        models=tuple(_restore(model, placed.get(model.name), _place(frames, model)) for model in models),
         lights=tuple(replace(each, pose=poses.get(each.name, each.pose)) for each in lights),
     )
 
@@ -44,7 +44,7 @@ def _place(frames: Frames, model: Model) -> Transform:
         return transform_of(model.pose.pose)  # `check` reports the missing frame.
 
 
-def _restored(model: Model, state: ModelState | None, place: Transform) -> Model:
+def _restore(model: Model, state: ModelState | None, place: Transform) -> Model:
     """Return a model with its saved state applied.
 
     `place` is the pose of the model in the world, which applies if the state does not contain a pose.
@@ -65,7 +65,7 @@ def _restored(model: Model, state: ModelState | None, place: Transform) -> Model
         found = models.get(each.name)
         if found is None or found.pose is None:
             return each
-        restored = _restored(each, found, place)
+        restored = _restore(each, found, place)
         return replace(restored, pose=inside(found.pose))
 
     return replace(

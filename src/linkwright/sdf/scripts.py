@@ -208,11 +208,11 @@ def read_script(text: str) -> dict[str, Look]:
         elif head in "{}":
             depth = max(0, depth + (1 if head == "{" else -1))
         elif current and depth:
-            found[current] = _with_word(found[current], head, words)
+            found[current] = _with_property(found[current], head, words)
     return found
 
 
-def _with_word(look: Look, word: str, values: list[str]) -> Look:
+def _with_property(look: Look, word: str, values: list[str]) -> Look:
     if word == "texture" and values and not look.image:
         return look._replace(image=values[0].strip('"'))
     if word in _COLORS and getattr(look, word) is None:

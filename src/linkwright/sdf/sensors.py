@@ -12,10 +12,10 @@ from typing import Any
 from linkwright.geometry.single import Vector3
 from linkwright.schema import AttributeRule, ElementRule
 from linkwright.sdf.cameras import CAMERA, Camera
-from linkwright.sdf.noise import NO_NOISE, NO_NOISE_XYZ, Noise, NoiseXyz, around_noise, noise_rule, noise_xyz
+from linkwright.sdf.noise import NO_NOISE, NO_NOISE_XYZ, Noise, NoiseXyz, noise_rule, noise_xyz_rule, wrapped_noise_rule
 from linkwright.sdf.plugins import PLUGIN, Plugin
 from linkwright.sdf.poses import AT_ORIGIN, POSE, RawPose
-from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TRUTH, VECTOR3, name_of, object_rule, unwritten, value
+from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TRUTH, VECTOR3, name_of, never_written, object_rule, value
 from linkwright.xmltree import Element
 
 
@@ -272,8 +272,8 @@ _IMU = object_rule(
     _imu_of,
     "imu",
     "the noise and the reference of an IMU",
-    noise_xyz("angular_velocity", "noise on the angular velocity"),
-    noise_xyz("linear_acceleration", "noise on the acceleration"),
+    noise_xyz_rule("angular_velocity", "noise on the angular velocity"),
+    noise_xyz_rule("linear_acceleration", "noise on the acceleration"),
     value("enable_orientation", TRUTH, "whether it measures its orientation too", default="true"),
     object_rule(
         _Reference,
@@ -313,7 +313,7 @@ def _navsat_of(position_sensing: _Sensing, velocity_sensing: _Sensing) -> Navsat
 
 def _navsat(tag: str) -> ElementRule:
     def sensing(kind: str, meaning: str) -> ElementRule:
-        parts = (around_noise("horizontal", "across the ground"), around_noise("vertical", "upwards"))
+        parts = (wrapped_noise_rule("horizontal", "across the ground"), wrapped_noise_rule("vertical", "upwards"))
         both = attrgetter(f"horizontal_{kind}", f"vertical_{kind}")
         return object_rule(
             _Sensing, f"{kind}_sensing", meaning, *parts, default=_Sensing(), get=lambda navsat: _Sensing(*both(navsat))
@@ -334,8 +334,8 @@ _FORCE_TORQUE = object_rule(
     "the frame and the noise of a force-torque sensor",
     value("frame", TEXT, "the frame of the measurement: child, parent or sensor", default="child"),
     value("measure_direction", TEXT, "child_to_parent or parent_to_child", default="child_to_parent"),
-    noise_xyz("force", "noise on the force"),
-    noise_xyz("torque", "noise on the torque"),
+    noise_xyz_rule("force", "noise on the force"),
+    noise_xyz_rule("torque", "noise on the torque"),
 )
 
 _SONAR = object_rule(
@@ -376,7 +376,7 @@ SENSOR = ElementRule(
         value("visualize", TRUTH, "whether its measurements are drawn", default="false"),
         value("enable_metrics", TRUTH, "whether it publishes its rate", default="false"),
         value("topic", TEXT, "where it publishes", default=""),
-        value("frame_id", TEXT, "the frame of its messages", default="", get=unwritten),
+        value("frame_id", TEXT, "the frame of its messages", default="", get=never_written),
         value(
             "gz_frame_id",
             TEXT,
@@ -384,10 +384,10 @@ SENSOR = ElementRule(
             default="",
             get=lambda sensor: sensor.frame_id,
         ),
-        value("ignition_frame_id", TEXT, "the frame of its messages, in older files", default="", get=unwritten),
+        value("ignition_frame_id", TEXT, "the frame of its messages, in older files", default="", get=never_written),
         CAMERA,
         _lidar("lidar"),
-        replace(_lidar("ray"), get=unwritten),
+        replace(_lidar("ray"), get=never_written),
         _IMU,
         object_rule(
             ContactSensor,
@@ -397,21 +397,21 @@ SENSOR = ElementRule(
             value("topic", TEXT, "the topic of its messages", default="__default_topic__"),
         ),
         _navsat("navsat"),
-        replace(_navsat("gps"), get=unwritten),
-        noise_xyz("magnetometer", "noise of a magnetometer", None),
+        replace(_navsat("gps"), get=never_written),
+        noise_xyz_rule("magnetometer", "noise of a magnetometer", None),
         object_rule(
             Altimeter,
             "altimeter",
             "noise of an altimeter",
-            around_noise("vertical_position", "noise on the height"),
-            around_noise("vertical_velocity", "noise on the vertical velocity"),
+            wrapped_noise_rule("vertical_position", "noise on the height"),
+            wrapped_noise_rule("vertical_velocity", "noise on the vertical velocity"),
         ),
         object_rule(
             AirPressure,
             "air_pressure",
             "the reference and the noise of a barometer",
             value("reference_altitude", NUMBER, "the altitude of its zero", "m", default="0"),
-            around_noise("pressure", "noise on the pressure", "noise"),
+            wrapped_noise_rule("pressure", "noise on the pressure", "noise"),
         ),
         _FORCE_TORQUE,
         _SONAR,

@@ -150,7 +150,7 @@ def _shape(**shapes: Shape | tuple[Polyline, ...] | None) -> Shape:
     return next((shape for shape in shapes.values() if shape), NO_SHAPE)
 
 
-def _if(kind: type) -> Callable[[Shape], Shape | None]:
+def _getter(kind: type) -> Callable[[Shape], Shape | None]:
     """Return a function for writing that returns a shape of the class `kind`, and None for any other."""
     return lambda shape: shape if isinstance(shape, kind) else None
 
@@ -175,28 +175,30 @@ GEOMETRY = object_rule(
         "box",
         "a box centred at the origin",
         value("size", VECTOR3, "edge lengths along x, y, z", "m", default="1 1 1", usual=True),
-        get=_if(Box),
+        get=_getter(Box),
     ),
     object_rule(
-        Capsule, "capsule", "a cylinder along z with a half sphere at each end", _HALF, _LENGTH, get=_if(Capsule)
+        Capsule, "capsule", "a cylinder along z with a half sphere at each end", _HALF, _LENGTH, get=_getter(Capsule)
     ),
-    object_rule(Cone, "cone", "a cone along z, its tip above", _HALF, _LENGTH, get=_if(Cone)),
-    object_rule(Cylinder, "cylinder", "a cylinder along z, centred at the origin", _RADIUS, _LENGTH, get=_if(Cylinder)),
+    object_rule(Cone, "cone", "a cone along z, its tip above", _HALF, _LENGTH, get=_getter(Cone)),
+    object_rule(
+        Cylinder, "cylinder", "a cylinder along z, centred at the origin", _RADIUS, _LENGTH, get=_getter(Cylinder)
+    ),
     object_rule(
         Ellipsoid,
         "ellipsoid",
         "an ellipsoid centred at the origin",
         value("radii", VECTOR3, "semi-axes along x, y, z", "m", default="1 1 1", usual=True),
-        get=_if(Ellipsoid),
+        get=_getter(Ellipsoid),
     ),
-    object_rule(Sphere, "sphere", "a sphere centred at the origin", _RADIUS, get=_if(Sphere)),
+    object_rule(Sphere, "sphere", "a sphere centred at the origin", _RADIUS, get=_getter(Sphere)),
     object_rule(
         Plane,
         "plane",
         "a plane without end",
         value("normal", VECTOR3, "the direction that it faces", default="0 0 1", usual=True),
         value("size", VECTOR2, "how much of it is drawn", "m", default="1 1", usual=True),
-        get=_if(Plane),
+        get=_getter(Plane),
     ),
     object_rule(
         Mesh,
@@ -211,7 +213,7 @@ GEOMETRY = object_rule(
             value("name", TEXT, "the name of the part in the file", default=""),
             value("center", TRUTH, "whether the part is moved to the origin", default="false"),
         ),
-        get=_if(Mesh),
+        get=_getter(Mesh),
     ),
     object_rule(
         Heightmap,
@@ -240,7 +242,7 @@ GEOMETRY = object_rule(
             field="blends",
         ),
         value("sampling", INTEGER, "the number of heights per pixel", default="2"),
-        get=_if(Heightmap),
+        get=_getter(Heightmap),
     ),
     object_rule(
         Image,
@@ -251,7 +253,7 @@ GEOMETRY = object_rule(
         value("threshold", INTEGER, "the brightness from 0 to 255 from which there is a box", default="200"),
         value("height", NUMBER, "height of the boxes", "m", default="1"),
         value("granularity", INTEGER, "how many pixels make one box along each side", default="1"),
-        get=_if(Image),
+        get=_getter(Image),
     ),
     object_rule(
         without_unreadable(Polyline),
@@ -262,6 +264,6 @@ GEOMETRY = object_rule(
         many=True,
         get=lambda shape: shape if isinstance(shape, tuple) else (),
     ),
-    object_rule(Empty, "empty", "no shape", get=_if(Empty)),
+    object_rule(Empty, "empty", "no shape", get=_getter(Empty)),
     default=NO_SHAPE,
 )

@@ -10,7 +10,7 @@ from typing import TypeVar
 
 from linkwright.geometry.single import Vector3
 from linkwright.schema import AttributeRule, ElementRule
-from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TRUTH, VECTOR3, object_rule, unwritten, value
+from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TRUTH, VECTOR3, never_written, object_rule, value
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,21 +155,21 @@ def _surface(friction: _FrictionGroup | None, contact: _ContactGroup | None, bou
 _Group = TypeVar("_Group")
 
 
-def _different(group: _Group, usual: _Group) -> _Group | None:
+def _unless_default(group: _Group, usual: _Group) -> _Group | None:
     """Return a group of values for writing, or None if all values are defaults."""
     return None if group == usual else group
 
 
 def _friction_group(surface: Surface) -> _FrictionGroup | None:
     group = _FrictionGroup(surface.friction, surface.bullet_friction, surface.torsional)
-    return _different(group, _FrictionGroup(None, None, None))
+    return _unless_default(group, _FrictionGroup(None, None, None))
 
 
 def _contact_group(surface: Surface) -> _ContactGroup | None:
     group = _ContactGroup(
         surface.contact, surface.collide_without_contact, surface.collide_bitmask, surface.category_bitmask
     )
-    return _different(group, _ContactGroup())
+    return _unless_default(group, _ContactGroup())
 
 
 _ODE_FRICTION = object_rule(
@@ -191,7 +191,7 @@ _ODE_FRICTION = object_rule(
                 get=lambda friction: friction.expressed_in,
             ),
             AttributeRule(
-                "ignition:expressed_in", TEXT, "the frame of the direction", default="", field="old", get=unwritten
+                "ignition:expressed_in", TEXT, "the frame of the direction", default="", field="old", get=never_written
             ),
         ),
         text=AttributeRule(
@@ -271,7 +271,7 @@ SURFACE = object_rule(
         value(
             "threshold", NUMBER, "the speed above which it bounces", "m/s", default="100000", field="bounce_threshold"
         ),
-        get=lambda surface: _different(_Bounce(surface.restitution, surface.bounce_threshold), _Bounce()),
+        get=lambda surface: _unless_default(_Bounce(surface.restitution, surface.bounce_threshold), _Bounce()),
     ),
     default=USUAL_SURFACE,
 )

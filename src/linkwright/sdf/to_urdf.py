@@ -63,7 +63,7 @@ def robot_from_sdf(sdf: Sdf, root: Element) -> Reading:
     """
     report = SdfReport()
     try:
-        return Reading(_Converter(_only_model(sdf, root)).robot(), ())
+        return Reading(_Converter(_require_single_model(sdf, root)).robot(), ())
     except _NoRobotError as error:
         message = phrase("this SDF cannot be a robot description: {reason}", reason=error.reason)
         report.reject("SDF180", message, error.element or root, hint=error.hint)
@@ -73,7 +73,7 @@ def robot_from_sdf(sdf: Sdf, root: Element) -> Reading:
     return Reading(None, report.in_order())
 
 
-def _only_model(sdf: Sdf, root: Element) -> Model:
+def _require_single_model(sdf: Sdf, root: Element) -> Model:
     if sdf.worlds:
         hint = phrase("give a file with only the <model> of the robot")
         raise _NoRobotError(phrase("it has a world, but a robot description is one model"), sdf.worlds[0].element, hint)
@@ -99,7 +99,7 @@ class _Converter:
             raise _NoRobotError(phrase("the model contains another model"), inner, hint)
         if not model.links:
             raise _NoRobotError(phrase("the model has no link"), model.element)
-        above = self._joints_above()
+        above = self._parent_joints()
         root = self._frames.link("")
         self._check_tree(root, above)
         joints = [self._joint(joint, above) for joint in model.joints]
@@ -114,7 +114,7 @@ class _Converter:
             element=model.element,
         )
 
-    def _joints_above(self) -> dict[str, Joint]:
+    def _parent_joints(self) -> dict[str, Joint]:
         above: dict[str, Joint] = {}
         for joint in self._model.joints:
             child = self._frames.link(joint.child)

@@ -16,12 +16,12 @@ _HARMLESS = frozenset({("collision", "material")})
 """Parents and child elements that no reader needs: the colour of an element that is never drawn."""
 
 
-def homes_of(tag: str) -> tuple[str, ...]:
+def allowed_parents(tag: str) -> tuple[str, ...]:
     """Return the tags of the parents in which SDF allows an element.
 
     The result is empty if the element is unknown or has many parents.
     """
-    found = _homes().get(tag, ())
+    found = _parents_by_tag().get(tag, ())
     return tuple(sorted(found)) if len(found) <= _MOST_HOMES else ()
 
 
@@ -50,7 +50,7 @@ def changes_nothing(child: Element, parent: Element, static_links: frozenset[int
     values = _numbers(text)
     if child.tag == "scale":
         return bool(values) and all(value == _NO_SCALE for value in values)
-    return child.tag not in _homes() and (text in _FALSE or (bool(values) and not any(values)))
+    return child.tag not in _parents_by_tag() and (text in _FALSE or (bool(values) and not any(values)))
 
 
 def _numbers(text: str) -> list[float]:
@@ -61,7 +61,7 @@ def _numbers(text: str) -> list[float]:
 
 
 @cache
-def _homes() -> dict[str, frozenset[str]]:
+def _parents_by_tag() -> dict[str, frozenset[str]]:
     """Return the tags of the allowed parents of each element, by tag."""
     homes: dict[str, set[str]] = {}
     seen: set[int] = set()

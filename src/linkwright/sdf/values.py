@@ -62,7 +62,7 @@ def leading_number(text: str) -> float | None:
     return None if found is None else float(found[0])
 
 
-def beginning_of_vector(text: str, count: int) -> tuple[float, ...] | None:
+def leading_numbers(text: str, count: int) -> tuple[float, ...] | None:
     """Return the first `count` numbers of a text, or None if there are fewer.
 
     The text is read as by ``>>`` in libsdformat.
@@ -180,7 +180,7 @@ def _only(value: Any) -> Any:
     return value
 
 
-def unwritten(_: Any) -> None:
+def never_written(_: Any) -> None:
     """Return None, so that the synonym of an element is never written."""
 
 

@@ -32,7 +32,7 @@ class Walk:
         self._length = sum(leg.length for leg in self._legs)
 
     @property
-    def is_somewhere(self) -> bool:
+    def has_waypoints(self) -> bool:
         """Whether the walk has at least one waypoint."""
         return bool(self._legs)
 

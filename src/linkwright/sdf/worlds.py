@@ -142,7 +142,7 @@ def gravity_of(world: World) -> Vector3:
     return physics.gravity or (0.0, 0.0, -9.8)
 
 
-def populated(world: World) -> World:
+def with_populations(world: World) -> World:
     """Return a world in which the models of its populations are added to its own models."""
     more = (model for population in world.populations for model in models_of(population))
     return replace(world, models=(*world.models, *more), populations=())

@@ -12,7 +12,7 @@ from linkwright.sdf.models import MODEL, Model
 from linkwright.sdf.reader import OPEN, WITHOUT_EFFECT
 from linkwright.sdf.worlds import SDF, Sdf, World
 from linkwright.xmltree import Document, Element, write
-from linkwright.xmltree.writer import tidied
+from linkwright.xmltree.writer import strip_mixed_text
 
 VERSION = "1.11"
 """The SDF version of the output: gz Harmonic, which Jazzy ships, reads no newer one."""
@@ -97,13 +97,13 @@ def _complete(element: Element, rule: ElementRule, instance: Any) -> None:
     if read is None:
         return
     if rule.tag in OPEN:
-        whole = tidied(read)
+        whole = strip_mixed_text(read)
         element.attributes = whole.attributes | element.attributes
         element.children = whole.children
         return
     unread = WITHOUT_EFFECT.get(rule.tag, ())
     element.children += (
-        tidied(element)
+        strip_mixed_text(element)
         for element in read.elements()
         if element.tag not in rule.child_rules and (element.tag in unread or ":" in element.tag)
     )

@@ -64,12 +64,12 @@ class Stepper:
             else:
                 self._mujoco.mj_step(self._model, self._data)
             if self._bounces and self._data.ncon:
-                self._push_off()
+                self._apply_restitution()
             count -= 1
         if count:
             self._mujoco.mj_step(self._model, self._data, count)
 
-    def _push_off(self) -> None:
+    def _apply_restitution(self) -> None:
         """Set the velocities with which bodies that have just collided bounce off each other."""
         contacts, speeds = self._data.contact, self._data.efc_vel
         geoms, rows = contacts.geom, contacts.efc_address
@@ -84,7 +84,7 @@ class Stepper:
         if not hits:
             return
         model, data = self._model, self._data
-        ways = np.concatenate([self._ways(contacts[index]) for index, _ in hits])
+        ways = np.concatenate([self._contact_jacobian(contacts[index]) for index, _ in hits])
         answers = np.zeros_like(ways)
         self._mujoco.mj_solveM(model, data, answers, ways)
         now = ways @ data.qvel
@@ -100,7 +100,7 @@ class Stepper:
         since = float(np.clip(depths / -speeds[rows[struck]], 0.0, 2.0 * model.opt.timestep).min())
         self._mujoco.mj_integratePos(model, data.qpos, gained, since)  # as if they had separated on contact
 
-    def _ways(self, contact: Any) -> Array:
+    def _contact_jacobian(self, contact: Any) -> Array:
         """Return the Jacobian of a contact along its normal and tangents, shape (3, degrees of freedom)."""
         model = self._model
         first, second = (np.zeros((3, model.nv)) for _ in range(2))

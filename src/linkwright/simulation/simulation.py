@@ -14,14 +14,14 @@ from linkwright.geometry.single import IDENTITY, Transform, Vector3, compose, in
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.sdf.models import Model
 from linkwright.sdf.resources import ResourceFinder
-from linkwright.sdf.saved import as_saved
+from linkwright.sdf.saved import with_saved_state
 from linkwright.sdf.worlds import World, gravity_of, physics_of
 from linkwright.simulation.actuators import Motor, Servo
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.restitution import Stepper
 from linkwright.simulation.scene.bodies import COLLISION_GROUP
-from linkwright.simulation.scene.compiling import compile_scene, count_links, refused_models, step_in_nanoseconds
-from linkwright.simulation.scene.figures import let_walk, put_kinematic
+from linkwright.simulation.scene.compiling import compile_scene, count_links, rejected_models, step_in_nanoseconds
+from linkwright.simulation.scene.figures import move_actors, set_kinematic_poses
 from linkwright.simulation.scene.meshes import MeshLibrary
 from linkwright.simulation.scene.scene import Scene
 from linkwright.simulation.schedule import Schedule, Task
@@ -62,7 +62,7 @@ class Simulation:
 
     def __init__(self, world: World, finder: ResourceFinder, *, step: float | None = None) -> None:
         self._mujoco = load_mujoco()
-        self.world = as_saved(world)
+        self.world = with_saved_state(world)
         count_links(self.world.models)
         self.finder = finder
         self._given_step = step
@@ -72,7 +72,7 @@ class Simulation:
         try:
             made = compile_scene(self.scene)
         except LinkwrightError:
-            refused = refused_models(self.world, finder)
+            refused = rejected_models(self.world, finder)
             if not refused:
                 raise
             self._meshes = MeshLibrary(finder)
@@ -133,11 +133,11 @@ class Simulation:
             world: the other world, with its includes resolved.
             finder: the finder of the other world's meshes.
         """
-        before, self.world, self.finder = self.world, as_saved(world), finder
+        before, self.world, self.finder = self.world, with_saved_state(world), finder
         self._meshes.set_finder(finder)
         self.scene.set_physics(self.world, self._given_step or self.scene.step_of(self.world))
         self.step = round(self.scene.step * NANOSECONDS_PER_SECOND)
-        if _outlook(before) != _outlook(self.world):
+        if _compiled_properties(before) != _compiled_properties(self.world):
             self.set_altered()
 
     def separate_simulation(self, world: World, finder: ResourceFinder) -> Simulation:
@@ -254,7 +254,7 @@ class Simulation:
         self.renew()
         if not self._current:
             mujoco, model, data = self._mujoco, self.model, self.data
-            let_walk(self.scene.figures, model, data, self.seconds)
+            move_actors(self.scene.figures, model, data, self.seconds)
             mujoco.mj_kinematics(model, data)
             mujoco.mj_comPos(model, data)
             mujoco.mj_camlight(model, data)
@@ -315,13 +315,13 @@ class Simulation:
         self._current = False
         dot = mujoco.mju_dot  # takes half the time of a comparison; numpy's dot warns of overflows
         if not (dot(positions, positions) < _SURELY and dot(velocities, velocities) < _SURELY) and not self._is_sound():
-            raise self._unstable(count, np.frombuffer(before[0]), np.frombuffer(before[1]))
+            raise self._unstable_error(count, np.frombuffer(before[0]), np.frombuffer(before[1]))
         self.time += count * self.step
 
     def _is_sound(self) -> bool:
         return all(bool((np.abs(state) < _BEYOND).all()) for state in self._state)
 
-    def _unstable(self, count: int, positions: Array, velocities: Array) -> UnstableError:
+    def _unstable_error(self, count: int, positions: Array, velocities: Array) -> UnstableError:
         """Return the error for an unstable simulation, and restore the last step before the failure.
 
         The last good state is simulated again to find this step; the error names the fastest body.
@@ -430,7 +430,7 @@ class Simulation:
         self.refresh()
         scene_model = self.scene.models[name]
         moved = compose(pose, invert(scene_model.pose))
-        if put_kinematic(scene_model.structure, moved, self.model, self.data):
+        if set_kinematic_poses(scene_model.structure, moved, self.model, self.data):
             self._stepper.expect_overlaps()
             self._current = False
             return
@@ -541,6 +541,6 @@ class Simulation:
         self._sleep.wake()
 
 
-def _outlook(world: World) -> tuple[object, ...]:
+def _compiled_properties(world: World) -> tuple[object, ...]:
     """Return the properties of a world for which a change requires MuJoCo's model to be rebuilt."""
     return gravity_of(world), physics_of(world).max_step_size, world.scene, world.lights

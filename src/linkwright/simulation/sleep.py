@@ -22,7 +22,7 @@ _LOOKS = 5
 """The number of looks in a row that must find a body at rest."""
 _LYING, _FREE = 3e-4, 1e-6
 """The speeds in m/s or rad/s above which a body moves: with contacts, and free of them."""
-_HARDLY = 1e-30
+_WAKING_SPEED = 1e-30
 """A speed at which nothing gets anywhere, and for which MuJoCo wakes a tree up before its next step."""
 
 
@@ -69,19 +69,19 @@ class Sleep:
         data = self._data
         if self._model.nv:
             resting = (data.tree_asleep >= 0)[self._model.dof_treeid] & (data.qvel == 0.0)
-            data.qvel[resting] = _HARDLY
+            data.qvel[resting] = _WAKING_SPEED
 
     def wake(self) -> None:
         """Wake all bodies, and keep them awake until they have been at rest for a while."""
         self.rouse()
         self._calm[:] = 0
-        self._allow()
+        self._set_policies()
 
     def stir(self, tree: int) -> None:
         """Wake a tree that was moved or set in motion; -1, for a static body without a tree, has no effect."""
         if tree >= 0:
             self._calm[tree] = 0
-            self._allow()
+            self._set_policies()
             self.rouse()
 
     def keep_awake(self, tree: int) -> None:
@@ -89,7 +89,7 @@ class Sleep:
         self._may[tree] = False
         self.wake()
 
-    def _allow(self) -> None:
+    def _set_policies(self) -> None:
         policies = self._mujoco.mjtSleepPolicy
         allowed = self._may & (self._calm >= _LOOKS)
         self._model.tree_sleep_policy[:] = np.where(allowed, policies.mjSLEEP_AUTO_ALLOWED, policies.mjSLEEP_NEVER)
@@ -107,7 +107,7 @@ class Sleep:
         np.maximum.at(free, self._tree_of, np.maximum(np.abs(way), np.abs(data.qvel)))
         rests = np.where(self._are_touching(), lying < _LYING, free < _FREE)
         self._calm = np.where(rests, self._calm + 1, 0)
-        self._allow()
+        self._set_policies()
 
     def _are_touching(self) -> Any:
         """Return whether each tree has a contact, shape (trees,)."""

@@ -19,7 +19,7 @@ from linkwright.bag.reindexing import reindex
 from linkwright.bag.rewriting import rewrite
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph.endpoints.service import EVENT_TOPIC_SUFFIX
-from linkwright.graph.log.logger import level_named
+from linkwright.graph.log.logger import level_from_name
 from linkwright.graph.qos.profile import QoSProfile
 from linkwright.graph.time.values import Duration
 from linkwright.standins.rclpy_api.context import Context
@@ -136,7 +136,7 @@ class _Transport:
         Raises:
             RuntimeError: there is no such level.
         """
-        if level_named(log_level) is None:
+        if level_from_name(log_level) is None:
             raise RuntimeError(f"Couldn't parse log level '{log_level}'")
         self._arguments = ["--ros-args", "--log-level", log_level]
         self._cancelled.clear()

@@ -69,7 +69,7 @@ class Bodies:
 
     def includes_massless_links(self, link: Link) -> bool:
         """Return whether a link's mass may include massless links with shapes that are fixed to it."""
-        return link.name in self._standing_for_others
+        return link.name in self._links_including_massless
 
     def mass(self, body: Body) -> float:
         """Return the sum of the positive masses of a body's links in kg, computed only once."""
@@ -81,7 +81,7 @@ class Bodies:
         return self._masses[body]
 
     @cached_property
-    def _standing_for_others(self) -> frozenset[str]:
+    def _links_including_massless(self) -> frozenset[str]:
         """The names of links with a mass that have massless neighbours with a shape.
 
         Neighbours are connected by fixed joints, possibly through empty links.

@@ -35,9 +35,9 @@ def parse_as_urdfdom(text: str | bytes, name: str) -> tuple[Document, tuple[Diag
         text = decode(text, name)
     late = _LATE_DECLARATION.match(text)
     if late:
-        from linkwright.xmltree.tinyxml import blanked
+        from linkwright.xmltree.tinyxml import blank_out
 
-        text = blanked(late[0]) + text[late.end() :]
+        text = blank_out(late[0]) + text[late.end() :]
     warnings: tuple[Diagnostic, ...] = ()
     try:
         document = parse(text, name, blanks=False)

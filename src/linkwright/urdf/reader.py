@@ -45,12 +45,12 @@ def read_link(element: Element, materials: MaterialTable, findings: UrdfReport) 
     errors = findings.error_count
     values = reader_of(LINK, findings.version).read(element, element, findings)
     if findings.error_count > errors:
-        _drop_what_urdfdom_drops(values, findings)
+        _drop_unreadable_parts(values, findings)
     values["visuals"] = tuple(_visual(fields, materials, element) for fields in values["visuals"])
     return Link(**values)
 
 
-def _drop_what_urdfdom_drops(values: dict[str, Any], findings: UrdfReport) -> None:
+def _drop_unreadable_parts(values: dict[str, Any], findings: UrdfReport) -> None:
     """Remove the first unreadable part and all parts after it, as urdfdom does.
 
     The first error of the unreadable part gets a note on the removed parts.

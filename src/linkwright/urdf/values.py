@@ -94,11 +94,11 @@ def number_hint(text: str) -> Phrase | None:
         return phrase("give a number")
     if "${" in text or "$(" in text:
         return phrase("xacro did not evaluate this: expand the file with xacro first")
-    if _reads(stripped):
+    if _is_number(stripped):
         return phrase("remove the space after it: '{text}'", text=text.rstrip())
-    if _reads(stripped.replace("\u2212", "-")):
+    if _is_number(stripped.replace("\u2212", "-")):
         return phrase("write the minus sign as a hyphen: '{stripped}'", stripped=stripped.replace(chr(8722), "-"))
-    if stripped.count(",") == 1 and _reads(stripped.replace(",", ".")):
+    if stripped.count(",") == 1 and _is_number(stripped.replace(",", ".")):
         return phrase("write a point as decimal separator: '{stripped}'", stripped=stripped.replace(",", "."))
     if stripped.lower().lstrip("+-") in ("inf", "infinity", "nan") or re.fullmatch(_DIGITS, stripped):
         return phrase("only finite numbers are read")
@@ -106,7 +106,7 @@ def number_hint(text: str) -> Phrase | None:
         return phrase("write it in decimal: '{int}'", int=int(stripped, 16))
     if "pi" in stripped.lower():
         return phrase("URDF has no 'pi': write 3.14159..., or use xacro, where ${pi} works")
-    if len(stripped.split()) > 1 and all(map(_reads, stripped.split())):
+    if len(stripped.split()) > 1 and all(map(_is_number, stripped.split())):
         return phrase("give one number")
     united = _WITH_UNIT.fullmatch(text)
     if united and united[2] in _UNITS:
@@ -122,15 +122,15 @@ def vector_hint(text: str, count: int) -> Phrase | None:
     if not text.strip():
         return phrase("give {count} numbers separated by spaces", count=count)
     pieces = text.split()
-    if len(pieces) == count and all(map(_reads, pieces)):
+    if len(pieces) == count and all(map(_is_number, pieces)):
         return phrase("separate the numbers with spaces, not tabs or line breaks: '{pieces}'", pieces=" ".join(pieces))
     pieces = [piece for piece in re.split(r"[,;\s]+", text.strip()) if piece]
-    if len(pieces) == count and all(map(_reads, pieces)) and re.search("[,;]", text):
+    if len(pieces) == count and all(map(_is_number, pieces)) and re.search("[,;]", text):
         return phrase("separate the numbers with spaces, not commas: '{pieces}'", pieces=" ".join(pieces))
     pieces = text.replace(",", ".").split()
-    if "," in text and len(pieces) == count and all(map(_reads, pieces)):
+    if "," in text and len(pieces) == count and all(map(_is_number, pieces)):
         return phrase("write a point as decimal separator: '{pieces}'", pieces=" ".join(pieces))
-    bad = next((piece for piece in text.split() if not _reads(piece)), None)
+    bad = next((piece for piece in text.split() if not _is_number(piece)), None)
     if bad is None:
         return phrase("give {count} numbers, not {text_split}", count=count, text_split=len(text.split()))
     if bad.startswith("(") and "," in bad:
@@ -168,7 +168,7 @@ def plain(value: float) -> str:
     return repr(value).removesuffix(".0")
 
 
-def _reads(text: str) -> bool:
+def _is_number(text: str) -> bool:
     try:
         number(text)
     except ValueError:

@@ -31,7 +31,7 @@ def meanings(name: str) -> list[Phrase]:
                     places.setdefault(phrase("- {line}", line=describe_attribute(attribute)), []).append(
                         (*path, attribute.name)
                     )
-    return [joined([_headed(paths), text], "\n\n") for text, paths in places.items()]
+    return [joined([_path_heading(paths), text], "\n\n") for text, paths in places.items()]
 
 
 def names() -> list[str]:
@@ -55,6 +55,6 @@ def _ends_with(path: _Path, asked: _Path) -> bool:
     return path[-len(asked) :] == asked
 
 
-def _headed(paths: list[_Path]) -> str:
+def _path_heading(paths: list[_Path]) -> str:
     """Return a Markdown heading that lists paths, which are relative to ``<robot>``."""
     return "# " + ", ".join(f"`{'.'.join(path[1:] or path)}`" for path in paths)

@@ -6,7 +6,7 @@ from linkwright.schema import write_element
 from linkwright.urdf.model import Robot
 from linkwright.urdf.schema import ROBOT
 from linkwright.xmltree import Document, write
-from linkwright.xmltree.writer import tidied
+from linkwright.xmltree.writer import strip_mixed_text
 
 
 def save(robot: Robot) -> str:
@@ -17,7 +17,7 @@ def save(robot: Robot) -> str:
     end.
     """
     root = write_element(ROBOT, robot)
-    root.children += map(tidied, robot.extensions)
+    root.children += map(strip_mixed_text, robot.extensions)
     if robot.element is not None:
         # Extension elements may use prefixes that the original file declared on its root.
         root.attributes |= {name: value for name, value in robot.element.attributes.items() if name.startswith("xmlns")}

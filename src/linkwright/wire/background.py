@@ -32,11 +32,11 @@ _JOINED_WITHIN = 10.0
 """Seconds after which the thread that joins is abandoned: an import that Ctrl-C ended may keep its lock for ever."""
 
 _LOOK_AGAIN = 0.01
-_CLOSED_WITHIN = 0.05
+_CLOSE_CHECK_INTERVAL = 0.05
 """Seconds after which a waiting thread notices that the domain was left."""
 
 
-class DepartureJudge(Protocol):
+class DepartureMonitor(Protocol):
     """Decides whether a remote publisher that disappeared was lost or left in order."""
 
     def watch(self, lost: Callable[[EndpointInfo], None]) -> None:
@@ -64,7 +64,7 @@ class BackgroundTransport(ABC):
         self,
         domain_id: int,
         outside: Outside,
-        departures: DepartureJudge,
+        departures: DepartureMonitor,
         logger: Logger,
         *,
         only_looks: bool = False,
@@ -123,7 +123,7 @@ class BackgroundTransport(ABC):
             Whether the transport is ready. If the domain cannot be joined or was left, False is returned immediately.
         """
         deadline = None if timeout is None else time.monotonic() + timeout
-        while not self._decided.wait(_CLOSED_WITHIN) and not self._closed:
+        while not self._decided.wait(_CLOSE_CHECK_INTERVAL) and not self._closed:
             if deadline is not None and time.monotonic() >= deadline:
                 return False
         if self._engine is None:
@@ -131,7 +131,9 @@ class BackgroundTransport(ABC):
         done = threading.Event()
         self._do(lambda _: done.set())
         while not self._closed and (deadline is None or time.monotonic() < deadline):
-            if done.wait(_CLOSED_WITHIN if deadline is None else min(_CLOSED_WITHIN, deadline - time.monotonic())):
+            if done.wait(
+                _CLOSE_CHECK_INTERVAL if deadline is None else min(_CLOSE_CHECK_INTERVAL, deadline - time.monotonic())
+            ):
                 break
         return done.is_set()
 
@@ -262,7 +264,7 @@ class BackgroundTransport(ABC):
     def _end_joining(self) -> None:
         until = time.monotonic() + _JOINED_WITHIN
         while self._starter.is_alive() and time.monotonic() < until:
-            self._starter.join(_CLOSED_WITHIN)
+            self._starter.join(_CLOSE_CHECK_INTERVAL)
             if self.waits:  # The thread may be in a call that waits for other processes and cannot be interrupted.
                 break
 
@@ -336,7 +338,7 @@ def log_join_failure(logger: Logger, error: LinkwrightError) -> None:
     logger.error(f"{findings}\nThis process continues by itself: other processes do not see its nodes.")
 
 
-def log_alone(logger: Logger, reason: Phrase) -> None:
+def log_no_transport(logger: Logger, reason: Phrase) -> None:
     """Log a warning that the process has no transport, with the reason."""
     logger.warning(f"This process does not communicate with other processes: {reason}. Communication inside it works.")
 
@@ -387,7 +389,7 @@ def join_with(
     reason = why_not(environment)
     if reason:
         if not is_switched_off(environment):
-            log_alone(logger, reason)
+            log_no_transport(logger, reason)
         return None
     try:
         settings = read_settings(environment, domain_id=options.get("domain_id"))

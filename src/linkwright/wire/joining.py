@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Phrase, install_hint, phrase, render
 from linkwright.wire import dds, zenoh
-from linkwright.wire.background import log_alone
+from linkwright.wire.background import log_no_transport
 from linkwright.wire.switch import is_switched_off
 from linkwright.wire.unfollowed import CYCLONE, MIDDLEWARE, ZENOH, new_unsupported_settings, refuse_enforced_security
 from linkwright.wire.zenoh.joining import is_installed as zenoh_is_installed
@@ -116,7 +116,7 @@ def join(graph: Graph, **options: Unpack[JoinOptions]) -> BackgroundTransport | 
     reason = unavailable_reason(environment)
     if reason:
         if not is_switched_off(environment):
-            log_alone(graph.get_logger("wire"), reason)
+            log_no_transport(graph.get_logger("wire"), reason)
         return None
     for finding in new_unsupported_settings(environment):
         graph.get_logger("wire").warning(render(finding))

@@ -21,6 +21,6 @@ def is_switched_off(environment: Mapping[str, str] | None = None) -> bool:
     return variables.get(SWITCH, "1") == "0"
 
 
-def switched_off() -> Phrase:
+def switched_off_reason() -> Phrase:
     """Return a text that explains how communication was switched off."""
     return phrase("the environment variable {switch} is 0", switch=SWITCH)

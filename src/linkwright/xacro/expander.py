@@ -261,7 +261,7 @@ class Expander:
         budget = session.budget
         budget.elements -= 1
         if budget.elements < 0:
-            self._too_many(node)
+            self._fail_too_many(node)
         attributes = self.attributes(node, scope) if plan.evaluated else plan.attributes.copy()
         element = Element(node.tag, attributes, node.source, node.offset, session.frame)
         output.append(element)
@@ -296,7 +296,7 @@ class Expander:
                         )
                     self.note(fault)
             if len(value) > LONG:
-                self._pay_text(node, value)
+                self._charge_text(node, value)
         return result
 
     def directive(self, site: Site) -> None:
@@ -306,7 +306,7 @@ class Expander:
 
     def _text(self, node: Text, scope: Scope) -> Text:
         if len(node.data) > LONG:
-            self._pay_text(node, node.data)
+            self._charge_text(node, node.data)
         if node.cdata or "$" not in node.data:
             return node
         self.session.place, self.session.attribute = node, None
@@ -317,7 +317,7 @@ class Expander:
             self.note(fault)
             data = ""
         if len(data) > LONG:
-            self._pay_text(node, data)
+            self._charge_text(node, data)
         return Text(data, node.source, node.offset)
 
     def _comment(self, node: Comment, scope: Scope) -> Comment:
@@ -416,7 +416,7 @@ class Expander:
             self.fail(fault)
         self.session.frame = frame
 
-    def _pay_text(self, node: Element | Text, text: str) -> None:
+    def _charge_text(self, node: Element | Text, text: str) -> None:
         try:
             self.session.budget.charge_text(len(text))
         except Fault as fault:
@@ -426,7 +426,7 @@ class Expander:
                 fault.place_in_text(node)
             self.fail(fault)
 
-    def _too_many(self, node: Element) -> NoReturn:
+    def _fail_too_many(self, node: Element) -> NoReturn:
         fault = self.session.budget.too_many_elements()
         fault.place_at(node)
         self.fail(fault)

@@ -96,7 +96,7 @@ _BLOCK = r"""<(/?)xacro:(if|unless|macro)\b(?:[^>"'/]|"[^"]*"|'[^']*'|/(?!>))*(/
 """A tag that begins or ends a condition or a macro."""
 
 
-class Elsewhere(NamedTuple):
+class InactiveDefinition(NamedTuple):
     """A definition of a name that is not in effect where the name is used.
 
     Attributes:
@@ -167,7 +167,7 @@ class Fault(Exception):  # noqa: N818 - it becomes a diagnostic, and is not part
         """Set the location to an element, for an evaluated text without a source."""
         self._place(element.source, element.span())
 
-    def elsewhere(self) -> Elsewhere | None:
+    def elsewhere(self) -> InactiveDefinition | None:
         """Return a definition of the missing property that is not in effect here, or None.
 
         Only the same file is searched. A definition without the xacro prefix also changes the hint.
@@ -193,7 +193,7 @@ class Fault(Exception):  # noqa: N818 - it becomes a diagnostic, and is not part
 
 def definition_elsewhere(
     source: SourceText, tag: str, name: str, prefix: str = "xacro:", used_at: int | None = None
-) -> Elsewhere | None:
+) -> InactiveDefinition | None:
     """Return a definition of a name in a file that is not in effect at an offset, or None."""
     if f"<{prefix}{tag}" not in source.text:
         return None  # return early to avoid compiling the patterns below
@@ -212,7 +212,7 @@ def definition_elsewhere(
     else:
         message = phrase("a {tag} '{name}' is defined here, which is too late or not in scope there", **values)
     span = source.span(match.start(), match.start() + len(f"<{prefix}{tag}"))
-    return Elsewhere(Note(message, span), hint)
+    return InactiveDefinition(Note(message, span), hint)
 
 
 def _is_conditional(before: str) -> bool:

@@ -88,9 +88,9 @@ class _PartsExpander(Expander):
 
     def __init__(self, session: Session) -> None:
         directives: Mapping[str, Directive] = {
-            tag: self._leaving_out(directive) for tag, directive in DIRECTIVES.items()
+            tag: self._skip_on_failure(directive) for tag, directive in DIRECTIVES.items()
         }
-        super().__init__(session, directives, self._leaving_out(call_macro))
+        super().__init__(session, directives, self._skip_on_failure(call_macro))
         self.trusted = True
         self.remarks_to_trust: int | None = None
         self._failures = 0
@@ -129,7 +129,7 @@ class _PartsExpander(Expander):
             return text
         return Text(_GAP, node.source, node.offset)
 
-    def _leaving_out(self, directive: Directive) -> Directive:
+    def _skip_on_failure(self, directive: Directive) -> Directive:
         """Return a directive that leaves a gap mark in the parent if the given directive fails."""
 
         def expand(expander: Expander, site: Site) -> None:
@@ -152,7 +152,7 @@ class _PartsExpander(Expander):
             self._nesting, session.frame, session.file = nesting, frame, file
             site.parent.attributes[_GAP] = ""
             if self._may_define_names(site.node):
-                self._trust_no_more()
+                self._stop_trusting()
             for diagnostic in reported:
                 self.keep(diagnostic)
 
@@ -167,7 +167,7 @@ class _PartsExpander(Expander):
             return True
         return diagnostic.code.startswith(("XML", "PKG")) and node.tag == "xacro:include"
 
-    def _trust_no_more(self) -> None:
+    def _stop_trusting(self) -> None:
         if self.trusted:
             self.trusted = False
             self.remarks_to_trust = len(self.session.diagnostics)

@@ -87,7 +87,7 @@ def plan_of(node: Element) -> Plan:
     """Return the plan of an element, which is computed on first use."""
     plan = node.plan
     if not isinstance(plan, Plan):
-        plan = node.plan = _worked_out(node, plan if isinstance(plan, int) else _UNKNOWN, 0)
+        plan = node.plan = _compute_plan(node, plan if isinstance(plan, int) else _UNKNOWN, 0)
     return plan
 
 
@@ -99,7 +99,7 @@ def steps_of(node: Element) -> list[Step]:
     return plan.steps
 
 
-def _worked_out(node: Element, end: int, depth: int) -> Plan:
+def _compute_plan(node: Element, end: int, depth: int) -> Plan:
     """Return a new plan of an element; `end` is the offset after its text, if known."""
     plan = Plan(node.attributes)
     children = _Children(node.children, end, depth)
@@ -234,7 +234,7 @@ def _inner_plan(node: Element, stop: int, depth: int) -> Plan | None:
             node.plan = stop
     if depth >= _DEEPEST:
         return None
-    node.plan = inner = _worked_out(node, stop, depth + 1)
+    node.plan = inner = _compute_plan(node, stop, depth + 1)
     return inner
 
 

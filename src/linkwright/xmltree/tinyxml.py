@@ -8,8 +8,8 @@ declaration directly after the first. Such files work for their users, so they a
 Characters that TinyXML2 accepts and expat refuses are replaced by the same number of other characters.
 
 The arguments of a repair are a text and the offset of the text's first mistake. It returns the text with all mistakes
-of its kind replaced, or the unchanged text if the mistake is of another kind. `put_back` then restores the original
-characters in the tree.
+of its kind replaced, or the unchanged text if the mistake is of another kind. `restore_characters` then
+restores the original characters in the tree.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ _ATTRIBUTE = lazy_pattern(r"""(\s*)([^\s=/>"'<]+)\s*=\s*("[^"]*"|'[^']*')""", re
 
 
 def stand_in(character: str) -> str:
-    """Return the substitute for a character, which `put_back` converts back.
+    """Return the substitute for a character, which `restore_characters` converts back.
 
     The character is ``&``, ``<`` or a control character.
     """
@@ -52,7 +52,7 @@ def can_stand_in(text: str) -> bool:
     return _ANY.search(text) is None
 
 
-def tags_alone(text: str) -> str:
+def blank_outside_tags(text: str) -> str:
     """Return a text of the same length in which comments and CDATA sections are blank."""
     return _BETWEEN_TAGS.sub(lambda found: " " * len(found[0]), text)
 
@@ -92,7 +92,7 @@ def _missing_blanks(text: str, at: int) -> str:
 REPAIRS = (_control_characters, _less_than_in_values, _missing_blanks)
 
 
-def put_back(document: Document, text: str) -> None:
+def restore_characters(document: Document, text: str) -> None:
     """Restore the original characters in a tree that was parsed from a repaired text.
 
     `text` is the text before the repairs.
@@ -137,7 +137,7 @@ def _values_without_blank_after(text: str) -> Iterator[_Value]:
 
 
 def _with_blanks_before(text: str) -> Iterator[tuple[_Value, str]]:
-    markup = tags_alone(text)
+    markup = blank_outside_tags(text)
     at = 0
     while tag := _TAG.search(markup, at):
         at = tag.end()
@@ -182,7 +182,7 @@ def parse_as_tinyxml(
             warnings.append(forbidden(mistake.message, mistake.span, source, mistake.hint, readers))
     document, more = _parsed(source, read_as, readers)
     if warnings or more:
-        put_back(document, text)
+        restore_characters(document, text)
     return document, (*warnings, *more)
 
 
@@ -226,7 +226,7 @@ def _ampersands(source: SourceText, read_as: str) -> tuple[str, _Mistake | None]
     text = source.text
     if not can_stand_in(text) or _DEFINITION in text:
         return read_as, None
-    bare = [match.start() for match in _BARE_AMPERSAND.finditer(tags_alone(text))]
+    bare = [match.start() for match in _BARE_AMPERSAND.finditer(blank_outside_tags(text))]
     if not bare:
         return read_as, None
     for at in bare:
@@ -239,10 +239,10 @@ def _ampersands(source: SourceText, read_as: str) -> tuple[str, _Mistake | None]
 
 def _without(text: str, match: re.Match[str]) -> str:
     """Return a text of the same length in which the first group of a match is blank."""
-    return text[: match.start(1)] + blanked(match[1]) + text[match.end(1) :]
+    return text[: match.start(1)] + blank_out(match[1]) + text[match.end(1) :]
 
 
-def blanked(text: str) -> str:
+def blank_out(text: str) -> str:
     """Return a text with all characters except blanks and line endings replaced by blanks.
 
     Positions in the rest of a file therefore stay valid.
@@ -264,12 +264,12 @@ def _parsed(source: SourceText, read_as: str, readers: Phrase) -> tuple[Document
             document = parse(source.text, source.name, blanks=False, read_as=read_as, any_prefix=True)
             return document, (first.with_changes(severity=Severity.WARNING),)
         end = _end_of_root(first, read_as)
-        if end is not None and _is_passed_over(read_as[end:]):
-            warning, read_as = _passed_over(source, end, readers), read_as[:end] + blanked(read_as[end:])
+        if end is not None and _is_ignored_content(read_as[end:]):
+            warning, read_as = _ignored_content_warning(source, end, readers), read_as[:end] + blank_out(read_as[end:])
         else:
             warning, read_as = (
                 first.with_changes(severity=Severity.WARNING, notes=(Note(readers),)),
-                _repaired(source, error, read_as),
+                _repair_text(source, error, read_as),
             )
         try:
             document, more = _parsed(source, read_as, readers)
@@ -280,7 +280,7 @@ def _parsed(source: SourceText, read_as: str, readers: Phrase) -> tuple[Document
         return document, (warning, *more)
 
 
-def _repaired(source: SourceText, error: LinkwrightError, text: str) -> str:
+def _repair_text(source: SourceText, error: LinkwrightError, text: str) -> str:
     """Return the text with all mistakes of the error's kind replaced.
 
     Raises:
@@ -296,7 +296,7 @@ def _repaired(source: SourceText, error: LinkwrightError, text: str) -> str:
     raise error
 
 
-def _passed_over(source: SourceText, end: int, readers: Phrase) -> Diagnostic:
+def _ignored_content_warning(source: SourceText, end: int, readers: Phrase) -> Diagnostic:
     """Return the warning about content after the root."""
     message = phrase("there is content after the end of the root element")
     hint = phrase("a file has one root element")
@@ -311,7 +311,7 @@ def _end_of_root(diagnostic: Diagnostic, text: str) -> int | None:
     return at if diagnostic.code == _AFTER_ROOT or (diagnostic.code == _NOT_XML and text.startswith("</", at)) else None
 
 
-def _is_passed_over(rest: str) -> bool:
+def _is_ignored_content(rest: str) -> bool:
     """Return whether TinyXML2 ignores the content after the root.
 
     This is so if the elements are well-formed up to an unmatched closing tag or the end.

@@ -52,7 +52,7 @@ def write_element(element: Element, depth: int = 0) -> str:
     return "".join(pieces)
 
 
-def tidied(root: Element) -> Element:
+def strip_mixed_text(root: Element) -> Element:
     """Return a copy in which texts next to elements are stripped.
 
     Otherwise, each write would add blanks to such texts.

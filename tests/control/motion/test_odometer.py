@@ -31,8 +31,8 @@ def test_velocities_are_the_mean_of_the_last_ones():
 
 def test_what_is_told_is_not_smoothed():
     odometer = Odometer(4)
-    odometer.assume((1.0, 0.0, 0.0), 0.5)
-    odometer.assume((0.0, 0.0, 0.0), 0.5)
+    odometer.add_commanded((1.0, 0.0, 0.0), 0.5)
+    odometer.add_commanded((0.0, 0.0, 0.0), 0.5)
     assert (odometer.place.x, odometer.velocity) == (0.5, (0.0, 0.0, 0.0))
 
 

@@ -330,4 +330,4 @@ def test_work_in_threads():
     finally:
         executor.shutdown()
         thread.join(60.0)
-        graph.close_now()
+        graph.close_threadsafe()

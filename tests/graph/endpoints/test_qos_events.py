@@ -179,7 +179,7 @@ async def test_lost_messages(graph, node):
     publisher = node.create_publisher(String, "topic", 10)
     for _ in range(5):
         publisher.publish(String())
-    subscription.lost_outside(4)
+    subscription.count_lost_outside(4)
     await graph.settle()
     assert [(event.total_count, event.total_count_change) for event in lost] == [(1, 1), (2, 1), (3, 1), (7, 4)]
 

@@ -149,7 +149,7 @@ def test_a_call_blocks_while_another_thread_answers():
     finally:
         executor.shutdown()
         thread.join(60.0)
-        graph.close_now()
+        graph.close_threadsafe()
     assert not thread.is_alive()
 
 
@@ -158,7 +158,7 @@ def test_a_call_that_is_not_answered_in_time_ends():
     node = graph.create_node("node")
     client = node.create_client(AddTwoInts, "add")
     assert client.call(AddTwoInts.Request(), timeout_sec=0.01) is None
-    graph.close_now()
+    graph.close_threadsafe()
 
 
 def test_waiting_for_a_service_ends_with_the_graph():
@@ -167,7 +167,7 @@ def test_waiting_for_a_service_ends_with_the_graph():
     found = []
     thread = threading.Thread(target=lambda: found.append(_waits(client)))
     thread.start()
-    graph.close_now()
+    graph.close_threadsafe()
     thread.join(60.0)
     assert found == [False]
 
@@ -189,4 +189,4 @@ def test_a_service_is_answered_by_the_executor_that_spins():
     executor.spin_until_future_complete(future, timeout_sec=60.0)
     assert future.result().sum == 3
     executor.shutdown()
-    graph.close_now()
+    graph.close_threadsafe()

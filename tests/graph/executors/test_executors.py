@@ -50,7 +50,7 @@ class Context:
 def graph():
     graph = Graph(threads=True, on_log=lambda _record: None)
     yield graph
-    graph.close_now()
+    graph.close_threadsafe()
 
 
 @pytest.fixture

@@ -72,7 +72,7 @@ class Asking:
 
     def close(self) -> None:
         self.executor.shutdown(1.0)
-        self._graph.close_now()
+        self._graph.close_threadsafe()
 
     @staticmethod
     def _count(goal: Any) -> Any:

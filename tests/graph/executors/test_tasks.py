@@ -244,7 +244,7 @@ class TestByAnExecutor:
         assert steps == [1]
         executor.spin_once(timeout_sec=0)
         assert steps == [1, 2]
-        graph.close_now()
+        graph.close_threadsafe()
 
     def test_a_hundred_coroutines_in_four_threads_end(self):
         futures = [Future() for _ in range(100)]

@@ -23,7 +23,7 @@ def test_each_is_told_once_as_long_as_it_is_there():
     namesakes.review(graph.nodes(), [])
     namesakes.review(graph.nodes(), there)
     assert len(log) == 2
-    graph.close_now()
+    graph.close_threadsafe()
 
 
 def test_names_of_the_root_have_one_slash():
@@ -32,7 +32,7 @@ def test_names_of_the_root_have_one_slash():
     graph.create_node("talker")
     Namesakes().review(graph.nodes(), [NodeIdentity("talker", "/", "/")])
     assert "'/talker'" in log[0].text
-    graph.close_now()
+    graph.close_threadsafe()
 
 
 def test_who_asks_to_be_told_hears_of_each_change_and_nothing_is_logged():
@@ -52,4 +52,4 @@ def test_who_asks_to_be_told_hears_of_each_change_and_nothing_is_logged():
         frozenset(),
     ]
     assert not log
-    graph.close_now()
+    graph.close_threadsafe()

@@ -283,7 +283,7 @@ def test_what_falls_due_without_a_dispatcher_waits_for_one():
     dispatcher.run()
     assert received == ["b", "c", "d"]
     assert dispatcher.alarms
-    graph.close_now()
+    graph.close_threadsafe()
 
 
 class Collecting:
@@ -316,7 +316,7 @@ def test_a_flood_announces_an_entity_once():
     for _ in range(1000):
         publisher.publish(String())
     assert len(dispatcher.entities) == 1
-    graph.close_now()
+    graph.close_threadsafe()
 
 
 def test_a_subscriber_that_blocks_holds_up_nobody_else():
@@ -353,7 +353,7 @@ def test_a_subscriber_that_blocks_holds_up_nobody_else():
         gate.set()
         executor.shutdown()
         thread.join(60.0)
-        graph.close_now()
+        graph.close_threadsafe()
 
 
 async def test_closing_leaves_nothing_behind():

@@ -327,7 +327,7 @@ class TestRates:
         assert time.monotonic() - start >= 0.019
         executor.shutdown()
         thread.join(60.0)
-        graph.close_now()
+        graph.close_threadsafe()
         with pytest.raises(InterruptedWaitError):
             rate.sleep()
 
@@ -344,7 +344,7 @@ class TestRates:
 
         thread = threading.Thread(target=sleep)
         thread.start()
-        graph.close_now()
+        graph.close_threadsafe()
         thread.join(60.0)
         assert raised == [True]
 

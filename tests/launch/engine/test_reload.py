@@ -324,7 +324,7 @@ async def test_what_was_removed_before_the_watch_began_is_told(tmp_path: Path, m
     async with running(path, viewer=False) as bench:
         await bench.shows("a")
         path.unlink()
-        bench.session.reload._catch_up()
+        bench.session.reload._reload_missed()
         await bench.until(lambda: bool(bench.findings()))
 
 

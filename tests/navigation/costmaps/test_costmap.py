@@ -16,9 +16,9 @@ from linkwright.navigation.costmaps.footprints import (
     circle,
     outline,
     pad_footprint,
+    parse_footprint,
     place_footprint,
     radii,
-    read_footprint,
 )
 from linkwright.navigation.grids.grid import Grid
 
@@ -90,7 +90,7 @@ def test_the_rim_has_no_gaps():
 
 
 def test_footprints_as_texts():
-    assert read_footprint("[[0.2, 0.2], [-0.2, 0.2], [-0.2,-0.2], [0.2, -0.2] ]").tolist() == SQUARE.tolist()
+    assert parse_footprint("[[0.2, 0.2], [-0.2, 0.2], [-0.2,-0.2], [0.2, -0.2] ]").tolist() == SQUARE.tolist()
     for text, why in (
         ("[]", "not a list"),
         ("[[1, 2], [3, 4]]", "has 2"),
@@ -98,4 +98,4 @@ def test_footprints_as_texts():
         ("x", "not a list"),
     ):
         with pytest.raises(BadFootprintError, match=why):
-            read_footprint(text)
+            parse_footprint(text)

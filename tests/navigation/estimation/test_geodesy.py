@@ -6,7 +6,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from linkwright.navigation.estimation.geodesy import TangentPlane, Zone, convergence, degrees_of_utm, utm_of, zone_of
+from linkwright.navigation.estimation.geodesy import (
+    TangentPlane,
+    Zone,
+    convergence,
+    degrees_from_utm,
+    utm_from_degrees,
+    zone_from_degrees,
+)
 
 latitudes, longitudes = st.floats(-80.0, 84.0), st.floats(-180.0, 179.999)
 
@@ -28,22 +35,22 @@ def meridian_arc(latitude):
 
 @pytest.mark.parametrize("latitude", [10.0, 45.0, 79.0])
 def test_along_the_middle_of_a_zone_northing_is_the_meridian_shrunk(latitude):
-    easting, northing = utm_of(latitude, 9.0, Zone(32, True))
+    easting, northing = utm_from_degrees(latitude, 9.0, Zone(32, True))
     assert easting == pytest.approx(500000.0, abs=1e-6)
     assert northing == pytest.approx(0.9996 * meridian_arc(latitude), abs=1e-5)
 
 
 def test_the_southern_half_counts_from_ten_thousand_kilometres():
-    _, north = utm_of(30.0, 10.0, Zone(32, True))
-    _, south = utm_of(-30.0, 10.0, Zone(32, False))
+    _, north = utm_from_degrees(30.0, 10.0, Zone(32, True))
+    _, south = utm_from_degrees(-30.0, 10.0, Zone(32, False))
     assert south == pytest.approx(10000000.0 - north)
 
 
 @settings(max_examples=100)
 @given(latitudes, longitudes)
 def test_there_and_back(latitude, longitude):
-    zone = zone_of(latitude, longitude)
-    back = degrees_of_utm(*utm_of(latitude, longitude, zone), zone)
+    zone = zone_from_degrees(latitude, longitude)
+    back = degrees_from_utm(*utm_from_degrees(latitude, longitude, zone), zone)
     assert back[0] == pytest.approx(latitude, abs=1e-9)
     assert (back[1] - longitude + 180.0) % 360.0 - 180.0 == pytest.approx(0.0, abs=1e-8)
 
@@ -53,8 +60,8 @@ def test_there_and_back(latitude, longitude):
 def test_the_projection_keeps_angles_and_turns_by_the_convergence(latitude, offset):
     zone, step = Zone(31, True), 1e-5
     longitude = 3.0 + offset
-    (x, y), (xn, yn) = utm_of(latitude, longitude, zone), utm_of(latitude + step, longitude, zone)
-    xe, ye = utm_of(latitude, longitude + step, zone)
+    (x, y), (xn, yn) = utm_from_degrees(latitude, longitude, zone), utm_from_degrees(latitude + step, longitude, zone)
+    xe, ye = utm_from_degrees(latitude, longitude + step, zone)
     north, east = (xn - x, yn - y), (xe - x, ye - y)
     assert north[0] * east[0] + north[1] * east[1] == pytest.approx(0.0, abs=1e-5 * hypot(*north) * hypot(*east) + 1e-6)
     angle = convergence(latitude, longitude, zone)
@@ -66,7 +73,7 @@ def test_the_projection_keeps_angles_and_turns_by_the_convergence(latitude, offs
     [(0.0, -180.0, 1), (0.0, 179.9, 60), (48.0, 9.0, 32), (60.0, 5.0, 32), (78.0, 10.0, 33), (78.0, 8.0, 31)],
 )
 def test_zones(latitude, longitude, number):
-    assert zone_of(latitude, longitude) == Zone(number, True)
+    assert zone_from_degrees(latitude, longitude) == Zone(number, True)
 
 
 @settings(max_examples=50)
@@ -75,13 +82,13 @@ def test_zones(latitude, longitude, number):
 )
 def test_a_plane_that_touches_the_earth(latitude, longitude, x, y, z):
     plane = TangentPlane(latitude, longitude, 100.0)
-    assert plane.point_of(*plane.place_of((x, y, z))) == pytest.approx((x, y, z), abs=1e-5)
-    assert plane.point_of(latitude, longitude, 107.0) == pytest.approx((0.0, 0.0, 7.0), abs=1e-6)
+    assert plane.point_from_geodetic(*plane.place_of((x, y, z))) == pytest.approx((x, y, z), abs=1e-5)
+    assert plane.point_from_geodetic(latitude, longitude, 107.0) == pytest.approx((0.0, 0.0, 7.0), abs=1e-6)
 
 
 def test_the_earth_bends_away_from_the_plane():
     plane = TangentPlane(0.0, 0.0, 0.0)
-    point = plane.point_of(0.0, 0.1, 0.0)
+    point = plane.point_from_geodetic(0.0, 0.1, 0.0)
     east = 6378137.0 * radians(0.1)
     assert point[0] == pytest.approx(east, rel=1e-5)
     assert point[2] == pytest.approx(-(6378137.0 - 6378137.0 * cos(radians(0.1))), rel=1e-6)

@@ -12,7 +12,7 @@ from linkwright.navigation.estimation.readings import (
     PoseReader,
     read_acceleration,
     read_twist,
-    without_gravity,
+    subtract_gravity,
 )
 
 SECOND = 1_000_000_000
@@ -98,7 +98,7 @@ def test_a_sensor_away_from_the_origin_moves_when_the_body_turns():
 def test_a_resting_accelerometer_measures_nothing_but_gravity():
     tilted = quaternion_from_rpy((0.3, -0.4, 1.0))
     upwards = compose((0.0, 0.0, 0.0, *_inverse(tilted)), (0.0, 0.0, GRAVITY, 0.0, 0.0, 0.0, 1.0))[:3]
-    assert without_gravity(np.array(upwards), tilted) == pytest.approx([0.0, 0.0, 0.0], abs=1e-12)
+    assert subtract_gravity(np.array(upwards), tilted) == pytest.approx([0.0, 0.0, 0.0], abs=1e-12)
 
 
 def test_acceleration_is_turned_into_the_body():

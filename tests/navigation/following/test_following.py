@@ -23,8 +23,8 @@ from linkwright.navigation.following.pure_pursuit import (
     RegulatedPurePursuit,
     carrot_on,
     curvature_to,
+    rotation_speed,
     speed_in_curve,
-    turning_speed,
 )
 from linkwright.navigation.following.rotation_shim import RotationShim
 from linkwright.navigation.following.sampling import Limits, SamplingFollower, SamplingParameters
@@ -103,7 +103,7 @@ class TestPurePursuit:
 
     @given(angle=st.floats(-pi, pi), now=st.floats(-1.8, 1.8))
     def test_turns_keep_to_the_acceleration(self, angle, now):
-        speed = turning_speed(angle, now, PERIOD, 1.8, 3.2)
+        speed = rotation_speed(angle, now, PERIOD, 1.8, 3.2)
         assert abs(speed - now) <= 3.2 * PERIOD + 1e-9
         assert abs(speed) <= 1.8 + 1e-9
 

@@ -19,7 +19,7 @@ def _nowhere(count: int) -> Poses:
 def test_particles_begin_with_the_mean_and_covariance_that_are_given() -> None:
     particles = ParticleFilter(FilterSettings(max_particles=20_000))
     covariance = np.array([[0.25, 0.1, 0.0], [0.1, 0.16, 0.0], [0.0, 0.0, 0.04]])
-    particles.begin_at((1.0, -2.0, 3.0), covariance)
+    particles.draw_around((1.0, -2.0, 3.0), covariance)
     assert particles.particles.mean(axis=0) == pytest.approx([1.0, -2.0, 3.0], abs=0.02)
     assert np.cov(particles.particles.T) == pytest.approx(covariance, abs=0.01)
     estimate = particles.estimate()
@@ -94,7 +94,7 @@ def test_a_pose_that_is_half_a_metre_wrong_is_put_right_while_driving() -> None:
     likelihoods = room()
     particles = ParticleFilter(FilterSettings())
     true = np.array((1.5, 1.2, 0.2))
-    particles.begin_at((1.8, 0.8, 0.5), np.diag((0.25, 0.25, (pi / 12) ** 2)))
+    particles.draw_around((1.8, 0.8, 0.5), np.diag((0.25, 0.25, (pi / 12) ** 2)))
     for _ in range(12):
         before = (float(true[0]), float(true[1]), float(true[2]))
         true += (0.25 * np.cos(true[2]), 0.25 * np.sin(true[2]), 0.05)
@@ -110,7 +110,7 @@ def test_a_pose_that_is_half_a_metre_wrong_is_put_right_while_driving() -> None:
 def test_twice_the_same_gives_the_same() -> None:
     def run() -> list[list[float]]:
         particles = ParticleFilter(FilterSettings(), seed=7)
-        particles.begin_at((2.0, 1.5, 0.0), np.eye(3) * 0.1)
+        particles.draw_around((2.0, 1.5, 0.0), np.eye(3) * 0.1)
         particles.weigh(room().likelihoods("likelihood_field", particles.particles, beams_in_room(2.0, 1.5, 0.0)))
         particles.resample(_nowhere)
         drawn: list[list[float]] = particles.particles.tolist()

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from linkwright.diagnostics import LinkwrightError
 from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.maps.images import MapImage, read_image
-from linkwright.navigation.maps.map_files import SavedAs, load_map, save_map
+from linkwright.navigation.maps.map_files import MapSaveSettings, load_map, save_map
 from linkwright.navigation.maps.map_yaml import MapMode, MapYaml
 from linkwright.navigation.maps.pixels import cells_of_image, pixels_of_cells
 
@@ -79,7 +79,7 @@ def test_raw_maps_come_back_as_they_were(
 ) -> None:
     folder = tmp_path_factory.mktemp("maps")
     grid = Grid(cells=cells, resolution=0.025, x=-12.345, y=3.0, yaw=0.5)
-    image, text = save_map(grid, SavedAs(name=str(folder / "a"), image_format=kind, mode=MapMode.RAW))
+    image, text = save_map(grid, MapSaveSettings(name=str(folder / "a"), image_format=kind, mode=MapMode.RAW))
     assert (image.name, text.name) == (f"a.{kind}", "a.yaml")
     again = load_map(text)
     assert again.cells.tolist() == cells.tolist()
@@ -91,7 +91,7 @@ def test_trinary_maps_come_back_as_free_occupied_and_unknown(
     tmp_path_factory: pytest.TempPathFactory, cells: NDArray[np.int8]
 ) -> None:
     name = str(tmp_path_factory.mktemp("maps") / "a")
-    _, text = save_map(Grid(cells=cells, resolution=0.05), SavedAs(name=name, free_thresh=0.196))
+    _, text = save_map(Grid(cells=cells, resolution=0.05), MapSaveSettings(name=name, free_thresh=0.196))
     known = np.where(cells >= 65, 100, np.where((cells >= 0) & (cells <= 20), 0, -1))
     assert load_map(text).cells.tolist() == known.tolist()
 
@@ -101,7 +101,7 @@ def test_scaled_maps_keep_what_is_unknown_by_opacity(
     tmp_path_factory: pytest.TempPathFactory, cells: NDArray[np.int8]
 ) -> None:
     name = str(tmp_path_factory.mktemp("maps") / "a")
-    image, text = save_map(Grid(cells=cells, resolution=0.05), SavedAs(name=name, mode=MapMode.SCALE))
+    image, text = save_map(Grid(cells=cells, resolution=0.05), MapSaveSettings(name=name, mode=MapMode.SCALE))
     assert image.suffix == ".png"
     again = load_map(text).cells
     assert ((again == -1) == (cells == -1)).all()
@@ -109,7 +109,9 @@ def test_scaled_maps_keep_what_is_unknown_by_opacity(
 
 
 def test_nav2_s_own_words_for_a_map(tmp_path: Path) -> None:
-    save_map(Grid(cells=np.zeros((1, 2), np.int8), resolution=0.05, x=-10.0), SavedAs(name=str(tmp_path / "map")))
+    save_map(
+        Grid(cells=np.zeros((1, 2), np.int8), resolution=0.05, x=-10.0), MapSaveSettings(name=str(tmp_path / "map"))
+    )
     assert (tmp_path / "map.pgm").read_bytes() == b"P5\n2 1\n255\n\xfe\xfe"
     assert (tmp_path / "map.yaml").read_text() == (
         "image: map.pgm\nmode: trinary\nresolution: 0.05\norigin: [-10, 0, 0]\nnegate: 0\n"
@@ -120,14 +122,14 @@ def test_nav2_s_own_words_for_a_map(tmp_path: Path) -> None:
 def test_who_saves_is_told_what_will_be_read_otherwise(tmp_path: Path) -> None:
     messages: list[str] = []
     grid = Grid(cells=np.array([[0, -1]], np.int8), resolution=0.05)
-    save_map(grid, SavedAs(name=str(tmp_path / "a")), messages.append)
+    save_map(grid, MapSaveSettings(name=str(tmp_path / "a")), messages.append)
     assert len(messages) == 1
     assert "Unknown cells are read back as free with a free threshold of 0.25" in messages[0]
     assert load_map(tmp_path / "a.yaml").cells.tolist() == [[0, 0]]
     messages.clear()
-    save_map(grid, SavedAs(name=str(tmp_path / "b"), free_thresh=0.196), messages.append)
+    save_map(grid, MapSaveSettings(name=str(tmp_path / "b"), free_thresh=0.196), messages.append)
     assert messages == []
-    save_map(grid, SavedAs(name=str(tmp_path / "c"), image_format="xyz", mode=MapMode.RAW), messages.append)
+    save_map(grid, MapSaveSettings(name=str(tmp_path / "c"), image_format="xyz", mode=MapMode.RAW), messages.append)
     assert "'xyz' is not one of the recommended formats" in messages[0]
     assert "Using 'png' instead" in messages[1]
     assert (tmp_path / "c.png").is_file()
@@ -170,13 +172,13 @@ def test_every_kind_of_pgm_is_read(tmp_path: Path, data: bytes) -> None:
     [(1.5, 0.2, "1.0 or less"), (0.5, -0.1, "0.0 or greater"), (0.2, 0.3, "smaller than threshold_occupied")],
 )
 def test_thresholds_must_make_sense(tmp_path: Path, occupied: float, free: float, message: str) -> None:
-    saved = SavedAs(name=str(tmp_path / "a"), occupied_thresh=occupied, free_thresh=free)
+    saved = MapSaveSettings(name=str(tmp_path / "a"), occupied_thresh=occupied, free_thresh=free)
     with pytest.raises(LinkwrightError, match=message):
         save_map(Grid(cells=np.zeros((1, 1), np.int8), resolution=0.05), saved)
 
 
 def test_a_folder_that_is_not_there_is_told(tmp_path: Path) -> None:
-    saved = SavedAs(name=str(tmp_path / "no" / "a"))
+    saved = MapSaveSettings(name=str(tmp_path / "no" / "a"))
     with pytest.raises(LinkwrightError) as raised:
         save_map(Grid(cells=np.zeros((1, 1), np.int8), resolution=0.05), saved)
     assert raised.value.diagnostics[0].code == "NAV206"

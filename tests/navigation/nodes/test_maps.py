@@ -12,7 +12,7 @@ from linkwright.graph import LATCHED_QOS, Graph, JumpClock, LogLevel, LogRecord
 from linkwright.messages import Time, get_message, get_service
 from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.grids.occupancy import occupancy_message
-from linkwright.navigation.maps.map_files import SavedAs, load_map, save_map
+from linkwright.navigation.maps.map_files import MapSaveSettings, load_map, save_map
 from linkwright.navigation.nodes.map_saver import MapSaver, MapSaverServer
 from linkwright.navigation.nodes.map_server import MapServer
 from linkwright.nodes import NodeOptions
@@ -24,7 +24,7 @@ _CELLS = np.array([[0, 100, -1], [0, 0, 100]], np.int8)
 
 def _files(folder: Path, name: str = "house", cells: np.ndarray[Any, Any] = _CELLS) -> str:
     grid = Grid(cells=cells, resolution=0.05, x=-1.0)
-    return str(save_map(grid, SavedAs(name=str(folder / name), free_thresh=0.196))[1])
+    return str(save_map(grid, MapSaveSettings(name=str(folder / name), free_thresh=0.196))[1])
 
 
 async def _call(graph: Graph, kind: str, service: str, **fields: object) -> Any:

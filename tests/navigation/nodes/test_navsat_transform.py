@@ -9,7 +9,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.geometry.single import quaternion_from_rpy
 from linkwright.graph import STATIC_TF_PUBLISHER_QOS
 from linkwright.messages import TFMessage, Time, TransformBatch, get_message, get_service
-from linkwright.navigation.estimation.geodesy import TangentPlane, degrees_of_utm, utm_of, zone_of
+from linkwright.navigation.estimation.geodesy import TangentPlane, degrees_from_utm, utm_from_degrees, zone_from_degrees
 from linkwright.navigation.nodes.robot_localization.navsat_transform import NavsatTransformNode
 from linkwright.nodes import NodeOptions
 from linkwright.testing.stepped import AsyncSteppedGraph
@@ -40,10 +40,10 @@ def turn(message, yaw):
 
 async def fix(test, east=0.0, north=0.0, altitude=200.0, frame="gps"):
     """What a receiver says that is some metres away from where it began, on the grid."""
-    zone = zone_of(*HERE)
-    x, y = utm_of(*HERE, zone)
+    zone = zone_from_degrees(*HERE)
+    x, y = utm_from_degrees(*HERE, zone)
     message = headed(test, "sensor_msgs/msg/NavSatFix", frame)
-    message.latitude, message.longitude = degrees_of_utm(x + east, y + north, zone)
+    message.latitude, message.longitude = degrees_from_utm(x + east, y + north, zone)
     message.altitude = altitude
     message.position_covariance = np.diag([1.0, 4.0, 9.0]).reshape(9)
     test.publish("/gps/fix", message)
@@ -113,18 +113,18 @@ async def test_odometry_becomes_fixes(test):
     await test.advance(0.15)
     await odometry(test, x=5.0, y=100.0)
     await test.advance(0.1)
-    zone = zone_of(*HERE)
-    x, y = utm_of(*HERE, zone)
-    east, north = utm_of(filtered.last.latitude, filtered.last.longitude, zone)
+    zone = zone_from_degrees(*HERE)
+    x, y = utm_from_degrees(*HERE, zone)
+    east, north = utm_from_degrees(filtered.last.latitude, filtered.last.longitude, zone)
     assert (east - x, north - y, filtered.last.altitude) == pytest.approx((0.0, 100.0, 200.0), abs=1e-4)
 
 
 async def test_a_datum_and_the_services(test):
     start(test, wait_for_datum=True, datum=[*HERE, 0.0])
     ask = get_service("robot_localization/srv/FromLL").Request()
-    zone = zone_of(*HERE)
-    x, y = utm_of(*HERE, zone)
-    ask.ll_point.latitude, ask.ll_point.longitude = degrees_of_utm(x + 20.0, y - 7.0, zone)
+    zone = zone_from_degrees(*HERE)
+    x, y = utm_from_degrees(*HERE, zone)
+    ask.ll_point.latitude, ask.ll_point.longitude = degrees_from_utm(x + 20.0, y - 7.0, zone)
     there = (await test.call("/fromLL", ask)).map_point
     assert (there.x, there.y) == pytest.approx((20.0, -7.0), abs=1e-6)
     back = (await test.call("/toLL", get_service("robot_localization/srv/ToLL").Request(map_point=there))).ll_point

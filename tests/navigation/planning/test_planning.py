@@ -15,7 +15,7 @@ from linkwright.navigation.grids.distances import distance_field
 from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.grids.library import load_scipy
 from linkwright.navigation.planning.planner import PlanError, Problem, Settings, plan, run
-from linkwright.navigation.planning.potential import NEUTRAL, potential, prices
+from linkwright.navigation.planning.potential import NEUTRAL, crossing_prices, potential
 from linkwright.navigation.planning.smoothing import Smoothing, smoothed
 
 RESOLUTION = 0.1
@@ -105,7 +105,7 @@ def test_in_the_open_it_is_the_distance():
 
 @pytest.mark.parametrize("seed", range(12))
 def test_it_is_what_the_cheapest_ways_along_cells_cost(seed):
-    price = prices(inflated(rooms(seed)).grid.cells)
+    price = crossing_prices(inflated(rooms(seed)).grid.cells)
     least, truth = run(potential(price, (2, 2))), dijkstra(price, (2, 2))
     reached = np.isfinite(least)
     assert np.array_equal(np.isfinite(truth), reached)
@@ -126,7 +126,7 @@ def test_it_reaches_what_is_connected_and_no_more(obstacles):
 
 @pytest.mark.parametrize("seed", range(6))
 def test_looking_only_towards_the_goal_gives_the_same_cost(seed):
-    price = prices(inflated(rooms(seed)).grid.cells)
+    price = crossing_prices(inflated(rooms(seed)).grid.cells)
     whole = run(potential(price, (2, 2)))
     for heuristic in (False, True):
         part = run(potential(price, (2, 2), (57, 57), heuristic=heuristic))
@@ -148,7 +148,7 @@ def test_in_the_open_a_plan_is_straight():
 @pytest.mark.parametrize("seed", range(25))
 def test_plans_touch_nothing_and_are_about_as_cheap_as_possible(seed):
     scene = inflated(rooms(seed))
-    price = prices(scene.grid.cells)
+    price = crossing_prices(scene.grid.cells)
     if not np.isfinite(price[[2, 57], [2, 57]]).all():
         return
     truth = dijkstra(price, (2, 2))[57, 57]

@@ -8,7 +8,7 @@ from math import inf
 import numpy as np
 import pytest
 
-from linkwright.navigation.slam.contradiction import contradiction
+from linkwright.navigation.slam.contradiction import contradiction_share
 from linkwright.navigation.slam.matching import match
 from linkwright.navigation.slam.poses import compose, relative_pose
 from linkwright.navigation.slam.reference import Likelihood, Reference
@@ -119,6 +119,6 @@ def test_a_turned_scan_is_found_where_larger_turns_are_tried(reference):
 def test_scans_of_one_room_do_not_contradict_each_other_and_those_of_two_do():
     here, there = np.array([-4.0, -3.0, 0.3]), np.array([-3.2, -2.8, 1.0])
     first, second = scan_at(WALLS, here), scan_at(WALLS, there)
-    assert contradiction(first, here, second, there) < 0.05
+    assert contradiction_share(first, here, second, there) < 0.05
     other = scan_at(WALLS, np.array([4.5, 0.0, 0.0]))
-    assert contradiction(first, here, other, there) > 0.2
+    assert contradiction_share(first, here, other, there) > 0.2

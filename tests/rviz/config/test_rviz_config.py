@@ -80,7 +80,7 @@ def test_grid_and_axes_are_as_large_as_the_model_asks_for(size, cell, marker_sca
 
 
 def sized(config, diagonal, ground=0.0):
-    return {(display.name, *path): value for display, path, value in config.sizes_for(diagonal, ground)}
+    return {(display.name, *path): value for display, path, value in config.take_sizes(diagonal, ground)}
 
 
 def test_grid_and_axes_are_mended_once_the_meshes_are_known():

@@ -12,7 +12,7 @@ from PIL import Image
 from linkwright.geometry.single import IDENTITY
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.sdf.cameras import Camera, Clip, Distortion, ImageFormat, Intrinsics
-from linkwright.sdf.optics import Optics, distorted, optics_of, undistorted
+from linkwright.sdf.optics import Optics, distort, optics_of, undistorted
 from linkwright.simulation.rendering import opengl
 from linkwright.simulation.rendering.choice import WAYS, make_renderer
 from linkwright.simulation.rendering.renderer import Channels
@@ -345,7 +345,7 @@ def test_a_lamp_lights_what_is_near(make):
 
 def test_a_distorted_point_comes_back():
     points = np.linspace(-0.6, 0.6, 13), np.linspace(-0.4, 0.5, 13)
-    assert undistorted(LENS, *distorted(LENS, *points)) == pytest.approx(np.array(points), abs=1e-9)
+    assert undistorted(LENS, *distort(LENS, *points)) == pytest.approx(np.array(points), abs=1e-9)
 
 
 def test_focal_lengths_may_be_given_instead_of_an_angle():

@@ -10,7 +10,7 @@ import pytest
 from linkwright.simulation.ray_casting import GROUPS, cast
 from linkwright.simulation.scene.bodies import VISUAL_GROUP
 from linkwright.simulation.scene.figures import skeleton_origin
-from linkwright.simulation.server.unsimulated import unsimulated
+from linkwright.simulation.server.unsimulated import unsimulated_elements
 from tests.simulation.worlds import GROUND, box, simulated
 
 BALL = "<geometry><sphere><radius>0.5</radius></sphere></geometry>"
@@ -122,5 +122,5 @@ def test_what_is_not_simulated_is_named_once():
         '<model name="m"><static>true</static><link name="l"><projector name="p"/><projector name="q"/></link></model>'
     )
     walker = ACTOR.replace("<script>", '<animation name="walk"/><plugin name="p" filename="libwalk.so"/><script>')
-    found = unsimulated(simulated(GROUND, more, walker).world)
+    found = unsimulated_elements(simulated(GROUND, more, walker).world)
     assert found == ["<animation> in <actor>", "<projector>", "libwalk.so in <actor>"]

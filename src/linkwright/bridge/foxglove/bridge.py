@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, cast
 from linkwright.bridge.foxglove.assets import Assets
 from linkwright.bridge.foxglove.clients import Client
 from linkwright.bridge.foxglove.names import NameFilter
-from linkwright.bridge.foxglove.origins import is_welcome
+from linkwright.bridge.foxglove.origins import is_allowed_origin
 from linkwright.bridge.foxglove.parameters import Parameters, parameter_entry
 from linkwright.bridge.foxglove.protocol import ENCODING, SUBPROTOCOLS, time_frame
 from linkwright.bridge.foxglove.services import Services
@@ -181,7 +181,7 @@ class FoxgloveBridge(SingleNode):
     async def _connected(self, request: web.Request) -> web.StreamResponse:
         from linkwright.page.http_server import web
 
-        if not is_welcome(request.headers.get("Origin"), self._origins):
+        if not is_allowed_origin(request.headers.get("Origin"), self._origins):
             return web.Response(status=403, text="Pages of other sites may not connect.\n")
         if len(self._sessions) >= _MOST_CLIENTS:
             return web.Response(status=503, text="Too many clients are connected.\n")

@@ -14,7 +14,7 @@ _SCHEMES_OF_PROGRAMS = ("file", "app", "foxglove", "lichtblick")
 """Desktop programs built from web pages."""
 
 
-def is_welcome(origin: str | None, more: Collection[str] = ()) -> bool:
+def is_allowed_origin(origin: str | None, more: Collection[str] = ()) -> bool:
     """Return whether a client with an ``Origin`` header may connect.
 
     A client without such a header is a program, and may connect. So may pages of Foxglove and Lichtblick, and pages

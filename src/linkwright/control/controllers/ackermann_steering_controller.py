@@ -32,13 +32,13 @@ class AckermannSteeringController(SteeringController[Parameters]):
     def drive(self) -> CarDrive:
         """Return the drive with the dimensions in the parameters, under current or older names."""
         parameters = self.parameters
-        traction = parameters.traction_track_width or parameters.of_traction(
+        traction = parameters.traction_track_width or parameters.select_traction(
             parameters.front_wheel_track, parameters.rear_wheel_track
         )
-        steering = parameters.steering_track_width or parameters.of_traction(
+        steering = parameters.steering_track_width or parameters.select_traction(
             parameters.rear_wheel_track, parameters.front_wheel_track
         )
-        radius = parameters.traction_wheels_radius or parameters.of_traction(
+        radius = parameters.traction_wheels_radius or parameters.select_traction(
             parameters.front_wheels_radius, parameters.rear_wheels_radius
         )
         return CarDrive(parameters.wheelbase, traction, steering or traction, radius)

@@ -72,9 +72,9 @@ class Goal:
     def _end(self, end: Callable[[Any], object], result: Any) -> None:
         if not self.ended:
             self.ended = True
-            self._node.call_on_loop(partial(self._on_loop, end, result))
+            self._node.call_on_loop(partial(self._end_on_loop, end, result))
 
-    def _on_loop(self, end: Callable[[Any], object], result: Any) -> None:
+    def _end_on_loop(self, end: Callable[[Any], object], result: Any) -> None:
         if self._handle.is_active:
             end(result)
 

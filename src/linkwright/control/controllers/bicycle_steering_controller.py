@@ -28,7 +28,7 @@ class BicycleSteeringController(SteeringController[Parameters]):
     def drive(self) -> CarDrive:
         """Return the drive with the dimensions in the parameters, under current or older names."""
         parameters = self.parameters
-        radius = parameters.traction_wheel_radius or parameters.of_traction(
+        radius = parameters.traction_wheel_radius or parameters.select_traction(
             parameters.front_wheel_radius, parameters.rear_wheel_radius
         )
         return CarDrive(parameters.wheelbase, 0.0, 0.0, radius)

@@ -58,7 +58,7 @@ class ControllerError(LinkwrightError):
 
 
 @dataclass(frozen=True, slots=True)
-class ControllerPlace:
+class ControllerContext:
     """The node, update rate and description that a manager passes to a controller.
 
     Attributes:
@@ -100,7 +100,7 @@ class Controller(ABC, Generic[P]):
 
     PARAMETERS: ClassVar[type[Any]] = NoParameters
 
-    def __init__(self, place: ControllerPlace) -> None:
+    def __init__(self, place: ControllerContext) -> None:
         self.name = place.name
         self.node = place.node
         self.update_rate = place.update_rate

@@ -127,7 +127,7 @@ class DiffDriveController(LimitedDrive[Parameters]):
         for number, command in enumerate(self.commands):
             command.value = left if number < count else right
         if self._settings.open_loop:
-            self._odometry.odometer.assume((forward, 0.0, angular), period_s)
+            self._odometry.odometer.add_commanded((forward, 0.0, angular), period_s)
         else:
             self._measure(period_s, moves=forward != 0.0 or angular != 0.0)
         self._publish(time_ns, forward, 0.0, angular)

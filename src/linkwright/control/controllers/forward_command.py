@@ -41,7 +41,7 @@ class GroupParameters:
     joints: tuple[str, ...] = parameter((), description="joints whose interface is commanded")
 
 
-class _Forwarding(Controller[P], Generic[P]):
+class _ForwardingController(Controller[P], Generic[P]):
     """The base class of controllers that forward ``~/commands`` to interfaces."""
 
     @abstractmethod
@@ -60,7 +60,7 @@ class _Forwarding(Controller[P], Generic[P]):
         """Subscribe to the commands."""
         self._names()
         self._wanted: Sequence[float] | None = None
-        commander = self.node.commander(self._command_rest)
+        commander = self.node.commander(self._stop_velocities)
         self.node.subscribe("std_msgs/msg/Float64MultiArray", "~/commands", self._on_command, commander=commander)
 
     def on_activate(self) -> None:
@@ -79,7 +79,7 @@ class _Forwarding(Controller[P], Generic[P]):
         for command, value in zip(self.commands, wanted, strict=True):
             command.value = value
 
-    def _command_rest(self) -> bool:
+    def _stop_velocities(self) -> bool:
         """Set commanded velocities to zero, and leave commanded positions and efforts as they are.
 
         Returns whether any commanded velocity was not zero.
@@ -107,7 +107,7 @@ class _Forwarding(Controller[P], Generic[P]):
         self._wanted = wanted
 
 
-class ForwardCommandController(_Forwarding[ForwardParameters]):
+class ForwardCommandController(_ForwardingController[ForwardParameters]):
     """``forward_command_controller/ForwardCommandController``."""
 
     PARAMETERS = ForwardParameters
@@ -120,7 +120,7 @@ class ForwardCommandController(_Forwarding[ForwardParameters]):
         return [f"{joint}/{self.parameters.interface_name}" for joint in self.parameters.joints]
 
 
-class MultiInterfaceForwardCommandController(_Forwarding[MultiInterfaceParameters]):
+class MultiInterfaceForwardCommandController(_ForwardingController[MultiInterfaceParameters]):
     """``forward_command_controller/MultiInterfaceForwardCommandController``."""
 
     PARAMETERS = MultiInterfaceParameters
@@ -133,7 +133,7 @@ class MultiInterfaceForwardCommandController(_Forwarding[MultiInterfaceParameter
         return [f"{self.parameters.joint}/{name}" for name in self.parameters.interface_names]
 
 
-class _Group(_Forwarding[GroupParameters]):
+class _Group(_ForwardingController[GroupParameters]):
     PARAMETERS = GroupParameters
     INTERFACE: str
     """The interface of its joints."""

@@ -114,7 +114,7 @@ class HusarionMecanumController(LimitedDrive[Parameters]):
         for command, value in zip(self.commands, speeds, strict=True):
             command.value = value
         if self._settings.open_loop:
-            self._odometry.odometer.assume((forward, sideways, angular), period_s)
+            self._odometry.odometer.add_commanded((forward, sideways, angular), period_s)
         else:
             self._measure(period_s)
         self._publish(time_ns, forward, sideways, angular)

@@ -108,7 +108,7 @@ class JointTrajectoryController(Controller[Parameters]):
         self._tune(parameters)
         self._current = self._read()
         if parameters.set_last_command_interface_value_as_state_on_activation:
-            self._current = self._as_commanded(self._current)
+            self._current = self._replace_by_commands(self._current)
         if not all(map(isfinite, self._current.positions)):
             raise ControllerError(phrase("the positions of the joints are not known yet"))
         self._last_command = self._current.copy()
@@ -235,7 +235,7 @@ class JointTrajectoryController(Controller[Parameters]):
             [acceleration.value for acceleration in accelerations],
         )
 
-    def _as_commanded(self, state: MotionState) -> MotionState:
+    def _replace_by_commands(self, state: MotionState) -> MotionState:
         """Return a state with the last commands in place of measurements.
 
         This keeps hardware that sags under load from being commanded to the sagged position.
@@ -294,7 +294,7 @@ class JointTrajectoryController(Controller[Parameters]):
         first = not trajectory.begun
         if first:
             before = self._last_command if self.parameters.open_loop else self._current
-            trajectory.begin(time_ns, _as_far_as_known(before), self._wrapped)
+            trajectory.begin(time_ns, _drop_unmeasured(before), self._wrapped)
         desired = self._following if time_ns == self._following_ns else trajectory.sample(time_ns)
         following = trajectory.sample(time_ns + self._period_ns)
         assert desired is not None
@@ -463,7 +463,7 @@ class JointTrajectoryController(Controller[Parameters]):
         return response
 
 
-def _as_far_as_known(state: MotionState) -> MotionState:
+def _drop_unmeasured(state: MotionState) -> MotionState:
     """Return a state without velocities or accelerations that the hardware does not measure."""
     known = [values if all(map(isfinite, values)) else [] for values in (state.velocities, state.accelerations)]
     return MotionState(state.positions, *known)

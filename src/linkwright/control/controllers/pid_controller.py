@@ -24,7 +24,7 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 _LATEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
-def _one_or_two(name: str, value: tuple[str, ...]) -> Phrase | None:
+def _check_interfaces(name: str, value: tuple[str, ...]) -> Phrase | None:
     """Return an error message unless a list contains one interface, or one and its derivative."""
     if not 1 <= len(value) <= 2:
         return phrase("Parameter '{name}' must be one interface, or an interface and its derivative", name=name)
@@ -47,7 +47,7 @@ class Parameters:
     dof_names: tuple[str, ...] = parameter((), read_only=True, check=not_empty)
     reference_and_state_dof_names: tuple[str, ...] = parameter((), read_only=True)
     command_interface: str = parameter("", read_only=True, check=not_empty)
-    reference_and_state_interfaces: tuple[str, ...] = parameter((), read_only=True, check=_one_or_two)
+    reference_and_state_interfaces: tuple[str, ...] = parameter((), read_only=True, check=_check_interfaces)
     use_external_measured_states: bool = parameter(False, description="states come from ~/measured_state")
     enable_feedforward: bool = parameter(False, description="whether feedforward_gain counts from the beginning")
     gains: Mapping[str, Gains] = for_each("dof_names", Gains)

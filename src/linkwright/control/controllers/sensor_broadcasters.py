@@ -190,7 +190,7 @@ class SensorBroadcaster(Controller[P]):
         return Header(stamp=Time(*divmod(time_ns, NANOSECONDS_PER_SECOND)), frame_id=frame)
 
 
-def _six(wrench: WrenchNames | Offset | Multiplier) -> list[Any]:
+def _wrench_values(wrench: WrenchNames | Offset | Multiplier) -> list[Any]:
     """Return the six values of forces and torques: force x, y, z, torque x, y, z."""
     return [getattr(vector, axis) for vector in (wrench.force, wrench.torque) for axis in "xyz"]
 
@@ -238,7 +238,7 @@ class ForceTorqueBroadcaster(SensorBroadcaster[WrenchParameters]):
             ControllerError: neither or both of ``sensor_name`` and ``interface_names`` are set.
         """
         parameters = self.parameters
-        named = _six(parameters.interface_names)
+        named = _wrench_values(parameters.interface_names)
         if not parameters.sensor_name and not any(named):
             raise ControllerError(
                 "'sensor_name' or at least one 'interface_names.[force|torque].[x|y|z]' parameter has to be specified."
@@ -263,7 +263,7 @@ class ForceTorqueBroadcaster(SensorBroadcaster[WrenchParameters]):
         six = [
             ((next(there) if name else 0.0) + offset) * factor
             for name, offset, factor in zip(
-                self._names, _six(parameters.offset), _six(parameters.multiplier), strict=True
+                self._names, _wrench_values(parameters.offset), _wrench_values(parameters.multiplier), strict=True
             )
         ]
         wrench = get_message("geometry_msgs/msg/Wrench")

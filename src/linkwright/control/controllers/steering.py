@@ -63,7 +63,7 @@ class SteeringParameters:
     use_stamped_vel: bool = parameter(True, description="whether ~/reference_unstamped is not taken too", only=HUMBLE)
     wheelbase: float = parameter(0.0, description="between the axles, in m")
 
-    def of_traction(self, front: float, rear: float) -> float:
+    def select_traction(self, front: float, rear: float) -> float:
         """Return the driven axle's value, given the older parameters for front and rear."""
         return rear if self.front_steering else front
 
@@ -213,7 +213,7 @@ class SteeringController(Controller[P], Generic[P]):
         forward, angular = (reference.value for reference in self.references)
         finite = isfinite(forward) and isfinite(angular)
         if self._settings.open_loop:
-            self._odometry.odometer.assume((forward, 0.0, angular) if finite else (0.0, 0.0, 0.0), period_s)
+            self._odometry.odometer.add_commanded((forward, 0.0, angular) if finite else (0.0, 0.0, 0.0), period_s)
         else:
             self._measure(period_s)
         if finite:

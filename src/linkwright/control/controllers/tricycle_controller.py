@@ -167,7 +167,7 @@ class TricycleController(Controller[Parameters]):
         self.commands[0].value, self.commands[1].value = speed, angle
         if self._settings.open_loop:
             forward, angular = self._drive.motion(speed, angle)
-            self._odometry.odometer.assume((forward, 0.0, angular), period_s)
+            self._odometry.odometer.add_commanded((forward, 0.0, angular), period_s)
         else:
             forward, angular = self._drive.motion(measured, angle_now)
             self._odometry.odometer.measure((forward, 0.0, angular), period_s)

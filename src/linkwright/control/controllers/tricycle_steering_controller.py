@@ -30,7 +30,7 @@ class TricycleSteeringController(SteeringController[Parameters]):
     def drive(self) -> CarDrive:
         """Return the drive with the dimensions in the parameters, under current or older names."""
         parameters = self.parameters
-        radius = parameters.traction_wheels_radius or parameters.of_traction(
+        radius = parameters.traction_wheels_radius or parameters.select_traction(
             parameters.front_wheels_radius, parameters.rear_wheels_radius
         )
         return CarDrive(parameters.wheelbase, parameters.traction_track_width or parameters.wheel_track, 0.0, radius)

@@ -41,7 +41,7 @@ class VelocityInput:
         self._timeout = round(timeout_s * NANOSECONDS_PER_SECOND)
         self._is_open = False
         self.forget()
-        commander = node.commander(self._lose)
+        commander = node.commander(self._on_publisher_lost)
         if topic != unstamped:
             node.subscribe("geometry_msgs/msg/TwistStamped", topic, self._receive_stamped, qos, commander=commander)
         if unstamped:
@@ -62,7 +62,7 @@ class VelocityInput:
         self._come: tuple[Velocity, int] | None = None
         self._command: tuple[Velocity, int] | None = None
 
-    def _lose(self) -> bool:
+    def _on_publisher_lost(self) -> bool:
         """Discard the command of a lost publisher, and return whether the command was not zero."""
         velocity, _ = self._come or self._command or ((0.0,), 0)
         self.forget()

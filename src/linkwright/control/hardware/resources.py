@@ -193,7 +193,7 @@ class Resources:
     def _pass(self, hardware: Hardware, transition: str, goal: LifecycleState) -> bool:
         name = hardware.description.name
         self._logger.info(f"'{transition}' hardware '{name}' ")
-        failure = _failure_of(getattr(hardware, f"on_{transition}"))
+        failure = _call_hardware(getattr(hardware, f"on_{transition}"))
         if failure:
             self._logger.error(f"Failed to '{transition}' hardware '{name}': {failure}")
             return False
@@ -209,7 +209,7 @@ class Resources:
         Returns an error message, or an empty string if the switch is possible.
         """
         for hardware in self.components.values():
-            refusal = _failure_of(hardware.prepare_switch, start, stop)
+            refusal = _call_hardware(hardware.prepare_switch, start, stop)
             if refusal:
                 name = hardware.description.name
                 return f"Component '{name}' did not accept command interfaces combination: {refusal}"
@@ -218,7 +218,7 @@ class Resources:
     def perform_switch(self, start: Collection[str], stop: Collection[str]) -> None:
         """Switch the command interfaces of all hardware; failures are logged."""
         for hardware in self.components.values():
-            failure = _failure_of(hardware.perform_switch, start, stop)
+            failure = _call_hardware(hardware.perform_switch, start, stop)
             if failure:
                 self._logger.error(f"Component '{hardware.description.name}' could not perform switch: {failure}")
 
@@ -256,7 +256,7 @@ class Resources:
 
     def _fail(self, hardware: Hardware, work: str, error: Exception) -> Hardware:
         self._logger.error(f"Error while {work} hardware '{hardware.description.name}': {_reason(error)}")
-        failure = _failure_of(hardware.on_error)
+        failure = _call_hardware(hardware.on_error)
         if failure:
             self._logger.error(f"'on_error' of hardware '{hardware.description.name}' failed: {failure}")
         hardware.state = FINALIZED if failure else UNCONFIGURED
@@ -267,7 +267,7 @@ class Resources:
         return {state.name for state in (*hardware.states, *hardware.commands)}
 
 
-def _failure_of(callback: Callable[..., object], *arguments: object) -> str:
+def _call_hardware(callback: Callable[..., object], *arguments: object) -> str:
     """Call a function of hardware, and return the message of its error, or an empty string."""
     try:
         callback(*arguments)

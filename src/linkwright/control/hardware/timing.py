@@ -10,7 +10,7 @@ from math import inf, nan, sqrt
 from time import perf_counter_ns
 
 
-class _Measured:
+class _Statistics:
     """The statistics of a measured quantity."""
 
     def __init__(self) -> None:
@@ -41,7 +41,7 @@ class Timing:
     """The durations and the rate of an activity that is performed in each cycle."""
 
     def __init__(self) -> None:
-        self._execution, self._periodicity = _Measured(), _Measured()
+        self._execution, self._periodicity = _Statistics(), _Statistics()
         self._before_ns = 0
 
     def measure(self, work: Callable[[int, float], object], time_ns: int, period_s: float) -> None:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from math import nan
 from typing import Any
 
-from linkwright.control.controllers.controller import Controller, ControllerError, ControllerPlace
+from linkwright.control.controllers.controller import Controller, ControllerContext, ControllerError
 from linkwright.control.controllers.node import ControllerNode
 from linkwright.control.controllers.registry import controller_class, controller_types
 from linkwright.control.hardware.component import Hardware
@@ -126,7 +126,7 @@ class ControllerManager:
                 node.get_logger().info(
                     phrase("is_async is requested, but not supported: the controller is updated in the control loop")
                 )
-            place = ControllerPlace(name, ControllerNode(node, self._exchange), float(rate), self.robot_description)
+            place = ControllerContext(name, ControllerNode(node, self._exchange), float(rate), self.robot_description)
             return made.variant(node.undeclared_overrides())(place)
         except LinkwrightError as error:
             self._log_error(error)
@@ -445,7 +445,7 @@ class ControllerManager:
         """
         failed = self.resources.read(time_ns, period_s)
         if failed:
-            self._stop_those_of(failed)
+            self._stop_users_of(failed)
         for loaded in self._active:
             if loaded.controller.state is not ACTIVE:
                 continue  # Deactivated in this cycle, because an earlier controller failed.
@@ -471,7 +471,7 @@ class ControllerManager:
             self.limits.enforce(period_s, self.resources.claims)
         failed = self.resources.write(time_ns, period_s)
         if failed:
-            self._stop_those_of(failed)
+            self._stop_users_of(failed)
 
     def _log_wrong_command(self, loaded: Loaded, name: str) -> None:
         loaded.controller.node.logger.error(
@@ -488,7 +488,7 @@ class ControllerManager:
         if isinstance(error, ControllerError):
             message = error.diagnostics[0].message
         loaded.controller.node.logger.error(message)
-        stopped = [loaded, *self._commanding(loaded)]
+        stopped = [loaded, *self._commanding_controllers(loaded)]
         names = " ".join(controller.name for controller in stopped)
         self._logger.error(f"Deactivating controllers : [ {names} ] as their update resulted in an error!")
         self._stop(stopped)
@@ -497,16 +497,16 @@ class ControllerManager:
             self._logger.error(f"Activating fallback controllers : [ {' '.join(loaded.fallbacks)} ]")
             self.switch(loaded.fallbacks, (), BEST_EFFORT)
 
-    def _commanding(self, loaded: Loaded) -> list[Loaded]:
+    def _commanding_controllers(self, loaded: Loaded) -> list[Loaded]:
         """Return the active controllers that command a controller directly or indirectly."""
         references = self.resources.references_of(loaded.name)
         owners = dict.fromkeys(
             self.resources.claims[reference] for reference in references if reference in self.resources.claims
         )
         found = [self.controllers[owner] for owner in owners]
-        return [*found, *(more for controller in found for more in self._commanding(controller))]
+        return [*found, *(more for controller in found for more in self._commanding_controllers(controller))]
 
-    def _stop_those_of(self, failed: Sequence[Hardware]) -> None:
+    def _stop_users_of(self, failed: Sequence[Hardware]) -> None:
         stopped = self._users_of(failed)
         if stopped:
             self._logger.error(
@@ -526,7 +526,12 @@ class ControllerManager:
         ]
         return [
             *found,
-            *(controller for loaded in found for controller in self._commanding(loaded) if controller not in found),
+            *(
+                controller
+                for loaded in found
+                for controller in self._commanding_controllers(loaded)
+                if controller not in found
+            ),
         ]
 
     def _stop(self, stopped: Sequence[Loaded]) -> None:

@@ -48,7 +48,7 @@ class Odometer:
         forward, sideways, angular = map(sum, zip(*last, strict=True))
         self.velocity = forward / count, sideways / count, angular / count
 
-    def assume(self, velocity: Velocity, seconds: float) -> None:
+    def add_commanded(self, velocity: Velocity, seconds: float) -> None:
         """Integrate a commanded velocity over a duration; it becomes the velocity without smoothing."""
         self._go(velocity, seconds)
         self.velocity = velocity

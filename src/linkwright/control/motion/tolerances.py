@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-UNSPECIFIED, ERASED = 0.0, -1.0
+UNSPECIFIED, NO_TOLERANCE = 0.0, -1.0
 """Values of a goal's tolerance: keep the controller's, and allow any error."""
 
 
@@ -91,6 +91,6 @@ def resolved(default: float, given: float) -> float:
         return given
     if given == UNSPECIFIED:
         return default
-    if given == ERASED:
+    if given == NO_TOLERANCE:
         return 0.0
     raise ValueError(given)

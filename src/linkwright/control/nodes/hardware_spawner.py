@@ -37,9 +37,9 @@ class HardwareSpawner(ManagerProgram):
         self._client = ManagerClient(
             self._node, self._arguments.controller_manager, self._arguments.controller_manager_timeout
         )
-        self._begin(self._lead)
+        self._begin(self._set_states)
 
-    async def _lead(self) -> int:
+    async def _set_states(self) -> int:
         logger, status = self._node.get_logger(), 0
         target, action = (ACTIVE, "activated") if self._arguments.activate else (INACTIVE, "configured")
         listed = [component.name for component in (await self._client.ask("list_hardware_components")).component]

@@ -101,9 +101,9 @@ class ArgumentSets:
         path = Path(os.path.abspath(path))  # noqa: PTH100 - links stay what they are
         finder = finder or PackageFinder(start=path.parent)
         near = list(self._files.around(path, self._folders))
-        sets = list(_Target(path, finder, near).sets())
+        sets = list(_CalledDescription(path, finder, near).sets())
         if not sets:  # A launch file may use a package that is not a declared dependency.
-            sets = list(_Target(path, finder, [*near, *self._files.elsewhere(path, self._folders)]).sets())
+            sets = list(_CalledDescription(path, finder, [*near, *self._files.elsewhere(path, self._folders)]).sets())
         found: dict[object, ArgumentSet] = {}
         for argument_set in sets:
             key = (tuple(sorted(argument_set.values.items())), argument_set.open)
@@ -122,7 +122,7 @@ class ArgumentSets:
 
 
 @dataclass(eq=False)
-class _Target:
+class _CalledDescription:
     """A description, and the files that may expand it, each with the name of the file's package."""
 
     path: Path

@@ -250,7 +250,7 @@ class _Comparer:
             path: the names of the enclosing elements.
             around: the name of the enclosing pair and the pair itself, or None for direct children of the robots.
         """
-        before, after = _keyed(old), _keyed(new)
+        before, after = _elements_by_key(old), _elements_by_key(new)
         for key in dict.fromkeys([*after, *before]):
             first, second = before.get(key), after.get(key)
             here = f"{path} {key}".strip()
@@ -284,7 +284,7 @@ class _Comparer:
         return " ".join(self.old.normalize(old).split()) == " ".join(self.new.normalize(new).split())
 
 
-def _keyed(elements: Sequence[Element]) -> dict[str, Element]:
+def _elements_by_key(elements: Sequence[Element]) -> dict[str, Element]:
     """Return elements in document order, by tag and name or reference.
 
     The keys of elements with the same tag and name are numbered.

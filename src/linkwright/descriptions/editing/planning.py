@@ -160,7 +160,7 @@ class _Planner:
         best: _Found | None = None
         least = (0, False)
         for candidate in islice(offered, _MOST_TRIALS):
-            found = self._tried(candidate, target, index, wanted, attempts)
+            found = self._try_candidate(candidate, target, index, wanted, attempts)
             if found is None:
                 continue
             if not found.also:
@@ -175,7 +175,7 @@ class _Planner:
             return
         raise EditRefusedError(refusal(place, index, attempts))
 
-    def _tried(
+    def _try_candidate(
         self, candidate: Candidate, target: Target, index: int, wanted: float, attempts: list[Attempt]
     ) -> _Found | None:
         """Return the description edited through a candidate, or None if the edit is not suitable.
@@ -190,7 +190,7 @@ class _Planner:
         guess, tolerance = candidate.value + wanted - present, EXACT
         for _ in range(2):
             guess = float(shortest(guess, tolerance))
-            trial = self._trial(candidate.place, candidate.write(guess, tolerance))
+            trial = self._try_text(candidate.place, candidate.write(guess, tolerance))
             values = None if trial is None else self._values_in(trial, target)
             if trial is None or values is None:
                 attempts.append(Attempt(candidate.place, error=True))
@@ -202,7 +202,7 @@ class _Planner:
             if candidate.is_choice and not any(same(abs(slope), plain) for plain in _PLAIN_SLOPES):
                 attempts.append(Attempt(candidate.place, choice=True))
                 return None
-            also = self._also(trial, target, index, values)
+            also = self._side_effects(trial, target, index, values)
             if also and not self._request.together:
                 attempts.append(Attempt(candidate.place, also=also, doubtful=candidate.is_choice))
                 return None
@@ -226,7 +226,7 @@ class _Planner:
             text += place.source.text[at : part.start] + (shortest(new[i]) if i in new else part.text)
             at = part.end
         text += place.source.text[at : place.end]
-        trial = self._trial(place, text)
+        trial = self._try_text(place, text)
         values = None if trial is None else self._values_in(trial, target)
         if trial is None or values is None:
             return None
@@ -234,13 +234,13 @@ class _Planner:
         exact = all(map(same, values, wanted)) and not self._differences(trial, target)
         return trial if exact else None
 
-    def _trial(self, place: Place, text: str) -> Snapshot | None:
+    def _try_text(self, place: Place, text: str) -> Snapshot | None:
         try:
             return self._now.with_text(place, text)
         except LinkwrightError:
             return None
 
-    def _also(self, trial: Snapshot, target: Target, index: int, values: list[float]) -> tuple[str, ...]:
+    def _side_effects(self, trial: Snapshot, target: Target, index: int, values: list[float]) -> tuple[str, ...]:
         """Return the names of the other parts that a trial edit changes."""
         found = self._differences(trial, target)
         present = self._values(target.attribute)
@@ -260,7 +260,7 @@ class _Planner:
         why_not = self._allowed(os.path.realpath(place.source.name))
         if why_not is not None:
             raise EditRefusedError(why_not)
-        trial = self._trial(place, text)
+        trial = self._try_text(place, text)
         values = None if trial is None else self._values_in(trial, target)
         also = () if trial is None else tuple(dict.fromkeys(self._differences(trial, target)))
         if also and self._request.together:
@@ -272,14 +272,14 @@ class _Planner:
 
     def _new_text(self, target: Target, element: Element | None, text: str) -> tuple[Place, str]:
         if element is not None:
-            written = self._twin(element)
+            written = self._source_element(element)
             tag = start_tag_of(written)
             if tag is not None and written.source is not None:
                 return Place(written.source, tag.room, tag.room), f' {target.attribute}="{text}"'
             raise EditRefusedError(_not_written(element))
         owner = target.owner(self._now.root)
         assert owner is not None, "it was found before"
-        written = self._twin(owner)
+        written = self._source_element(owner)
         new = Element(target.tag, {target.attribute: text})
         after = None
         if target.tag == "axis":
@@ -289,7 +289,7 @@ class _Planner:
             raise EditRefusedError(_not_written(owner))
         return Place(written.source, edit.start, edit.end), edit.text
 
-    def _twin(self, element: Element) -> Element:
+    def _source_element(self, element: Element) -> Element:
         """Return the unexpanded element in the file for an element of the expansion."""
         if element.source is None:
             raise EditRefusedError(_not_written(element))

@@ -55,7 +55,7 @@ class ClientGoalHandle:
         Returns:
             The action_msgs/srv/CancelGoal response; None if it does not arrive in time.
         """
-        return _waited_for(self.cancel_goal_async(), timeout_sec)
+        return _wait_for_result(self.cancel_goal_async(), timeout_sec)
 
     def cancel_goal_async(self) -> Future[Any]:
         """Request cancellation of the goal.
@@ -73,7 +73,7 @@ class ClientGoalHandle:
         Returns:
             The response with ``status`` and ``result``; None if it does not arrive in time.
         """
-        return _waited_for(self.get_result_async(), timeout_sec)
+        return _wait_for_result(self.get_result_async(), timeout_sec)
 
     def get_result_async(self) -> Future[Any]:
         """Request the result.
@@ -174,7 +174,7 @@ class ActionClient(ActionEndpoint):
             TypeError: `goal` is not a goal message of the action.
             TimeoutError: the server did not respond in time.
         """
-        handle = _waited_for(self.send_goal_async(goal, **options), timeout_sec)
+        handle = _wait_for_result(self.send_goal_async(goal, **options), timeout_sec)
         return handle.get_result(timeout_sec) if handle.accepted else None
 
     def send_goal_async(
@@ -205,7 +205,7 @@ class ActionClient(ActionEndpoint):
         handed: Future[ClientGoalHandle] = Future()
         answer = self._goal_client.call_async(request)
         handed.source = self._goal_client
-        answer.add_waiter(partial(self._goal_answered, answer, request.goal_id, handed))
+        answer.add_waiter(partial(self._on_goal_response, answer, request.goal_id, handed))
         return handed
 
     def cancel(self, goal: ClientGoalHandle) -> Future[Any]:
@@ -247,7 +247,7 @@ class ActionClient(ActionEndpoint):
             part.destroy()
         self._handle.remove_cleanup(self.destroy)
 
-    def _goal_answered(self, answer: Future[Any], goal_id: Any, handed: Future[ClientGoalHandle]) -> None:
+    def _on_goal_response(self, answer: Future[Any], goal_id: Any, handed: Future[ClientGoalHandle]) -> None:
         if answer.cancelled():
             handed.cancel()
             return
@@ -293,7 +293,7 @@ def _check_handle(goal: object) -> None:
         raise TypeError(f"Expected type ClientGoalHandle but received {type(goal)}")
 
 
-def _waited_for(future: Future[Any], timeout_sec: float | None) -> Any:
+def _wait_for_result(future: Future[Any], timeout_sec: float | None) -> Any:
     if not future.wait(timeout_sec):
         raise TimeoutError("no response of the action's server in time")
     return future.result()

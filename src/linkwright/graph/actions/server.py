@@ -46,7 +46,7 @@ def default_cancel_callback(cancel_request: ServerGoalHandle) -> CancelResponse:
     return CancelResponse.REJECT
 
 
-async def awaited_result(value: Any) -> Any:
+async def await_result(value: Any) -> Any:
     """Return a callback's return value, awaited first if it is awaitable."""
     return await value if isawaitable(value) else value
 
@@ -205,7 +205,7 @@ class ActionServer(ActionEndpoint):
         response = self._action_type.Impl.SendGoalService.Response()
         goal = None
         if uuid not in self._goal_handles:
-            answer = await awaited_result(self._goal_callback(request.goal))
+            answer = await await_result(self._goal_callback(request.goal))
             if not isinstance(answer, GoalResponse):
                 logger.warning("Goal request callback did not return a GoalResponse type. Rejecting goal.")
             elif answer is GoalResponse.ACCEPT:
@@ -218,7 +218,7 @@ class ActionServer(ActionEndpoint):
             return
         logger.debug(f"New goal accepted: {request.goal_id.uuid}")
         self._publish_status()
-        await awaited_result(self._handle_accepted_callback(goal))
+        await await_result(self._handle_accepted_callback(goal))
 
     def _accept(self, request: Any) -> ServerGoalHandle:
         info = self._goal_info()
@@ -234,7 +234,7 @@ class ActionServer(ActionEndpoint):
         response.return_code, goals = self._goals_to_cancel(request.goal_info)
         canceling = []
         for goal in goals:
-            answer = await awaited_result(self._cancel_callback(goal))
+            answer = await await_result(self._cancel_callback(goal))
             if answer is CancelResponse.ACCEPT and GoalStatus(goal.status) in CANCELABLE:
                 goal.update(GoalEvent.CANCEL_GOAL)
                 canceling.append(goal.goal_info)
@@ -287,7 +287,7 @@ class ActionServer(ActionEndpoint):
     async def _execute(self, callback: Callable[[ServerGoalHandle], Any], goal: ServerGoalHandle) -> None:
         result = None
         try:
-            result = await awaited_result(callback(goal))
+            result = await await_result(callback(goal))
         except Exception as error:  # noqa: BLE001  # the client of the goal must learn that it failed
             self._executions.report(error)
         kind = self._action_type.Result
@@ -379,4 +379,4 @@ class _Executions(Entity):
 
     def take(self) -> Callable[[], object] | None:
         """Remove the oldest call from the queue and return it; None if the queue is empty."""
-        return self._next_of(self._waiting)
+        return self._take_from(self._waiting)

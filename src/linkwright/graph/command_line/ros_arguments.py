@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, joined, phrase
-from linkwright.graph.log.logger import LogLevel, level_named
+from linkwright.graph.log.logger import LogLevel, level_from_name
 from linkwright.graph.parameters.parameter import ANY_NODE, ParameterRules
 
 BEGIN = "--ros-args"
@@ -125,7 +125,7 @@ def remove_ros_arguments(arguments: Sequence[str]) -> list[str]:
 
 
 def _read_remapping(ros: RosArguments, rule: str) -> None:
-    source, target = _assignment(rule, phrase("a remapping rule"), phrase("from:=to"))
+    source, target = _split_assignment(rule, phrase("a remapping rule"), phrase("from:=to"))
     node = None
     match = _NODE_PREFIX.fullmatch(source)
     if match:
@@ -136,7 +136,7 @@ def _read_remapping(ros: RosArguments, rule: str) -> None:
 def _read_parameter(ros: RosArguments, rule: str) -> None:
     from linkwright.graph.parameters.files import parse_value  # Imported here because few nodes receive parameters.
 
-    name, text = _assignment(rule, phrase("a parameter"), phrase("name:=value"))
+    name, text = _split_assignment(rule, phrase("a parameter"), phrase("name:=value"))
     pattern = ANY_NODE
     match = _NODE_PREFIX.fullmatch(name)
     if match:
@@ -152,7 +152,7 @@ def _read_parameter_file(ros: RosArguments, path: str) -> None:
 
 def _read_log_level(ros: RosArguments, rule: str) -> None:
     name, separator, word = rule.rpartition(":=")
-    level = level_named(word)
+    level = level_from_name(word)
     if level is None or (separator and not name):
         levels = [log_level.name.lower() for log_level in LogLevel]
         raise _error(
@@ -209,7 +209,7 @@ _FLAGS = {
 }
 
 
-def _assignment(rule: str, what: Phrase, form: Phrase) -> tuple[str, str]:
+def _split_assignment(rule: str, what: Phrase, form: Phrase) -> tuple[str, str]:
     left, separator, right = rule.partition(":=")
     if not separator or not left:
         raise _error(phrase("'{rule}' is not {what}", rule=rule, what=what), phrase("write {form}", form=form))

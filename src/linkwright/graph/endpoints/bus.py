@@ -280,10 +280,10 @@ def describe_mismatch(
 
 
 def _terms(qos: QoSProfile, policies: list[QoSPolicyKind]) -> str:
-    return ", ".join(_term(qos, policy) for policy in policies)
+    return ", ".join(_format_policy(qos, policy) for policy in policies)
 
 
-def _term(qos: QoSProfile, policy: QoSPolicyKind) -> str:
+def _format_policy(qos: QoSProfile, policy: QoSPolicyKind) -> str:
     if policy is QoSPolicyKind.RELIABILITY:
         return _words(qos.reliability.name)
     if policy is QoSPolicyKind.DURABILITY:

@@ -37,7 +37,7 @@ _RELATIONS: dict[str, Callable[[Any, Any], Any]] = {
 }
 _WORDS = frozenset({"AND", "OR", "NOT", "BETWEEN", "LIKE", "MATCH", "TRUE", "FALSE"})
 _WILD = {"%": ".*", "*": ".*", "_": ".", "?": "."}
-_MOST_PARAMETERS = 100
+_MAX_PARAMETERS = 100
 _PART = re.compile(r"(\w+)|\[(\d+)\]")
 
 
@@ -70,8 +70,8 @@ class ContentFilter:
 
     def __init__(self, options: ContentFilterOptions, message_class: Any) -> None:
         self.options = options
-        if len(options.expression_parameters) > _MOST_PARAMETERS:
-            raise ContentFilterError(f"a content filter takes at most {_MOST_PARAMETERS} parameters")
+        if len(options.expression_parameters) > _MAX_PARAMETERS:
+            raise ContentFilterError(f"a content filter takes at most {_MAX_PARAMETERS} parameters")
         self._condition = _Parser(options, message_class).parse()
 
     def accepts(self, message: Any) -> bool:
@@ -132,7 +132,7 @@ class _Parser:
             return True
         return False
 
-    def _need(self, word: str) -> None:
+    def _expect(self, word: str) -> None:
         if not self._took(word):
             raise self._error(f"'{word}' is missing before '{self._tokens[0].text or 'its end'}'")
 
@@ -164,14 +164,14 @@ class _Parser:
             return lambda message: not condition(message)
         if self._took("("):
             condition = self._any_of()
-            self._need(")")
+            self._expect(")")
             return condition
         return self._predicate()
 
     def _predicate(self) -> Condition:
         left = self._value()
         if self._took("NOT"):
-            self._need("BETWEEN")
+            self._expect("BETWEEN")
             between = self._between(left)
             return lambda message: not between(message)
         if self._took("BETWEEN"):
@@ -186,7 +186,7 @@ class _Parser:
 
     def _between(self, value: _Value) -> Condition:
         low = _compared(value, operator.ge, self._value())
-        self._need("AND")
+        self._expect("AND")
         high = _compared(value, operator.le, self._value())
         return lambda message: low(message) and high(message)
 

@@ -95,7 +95,7 @@ class EndpointEvents(Entity):
         self._deadline: _Watch | None = None
         deadline_ns = limit_ns(endpoint.qos_profile.deadline)
         if deadline_ns is not None and callbacks.deadline is not None:
-            self._deadline = self._watch(deadline_ns, self._deadline_missed)
+            self._deadline = self._watch(deadline_ns, self._on_deadline_missed)
 
     @property
     def what(self) -> str:
@@ -130,7 +130,7 @@ class EndpointEvents(Entity):
 
         Returns None if the queue is empty.
         """
-        return self._next_of(self._waiting)
+        return self._take_from(self._waiting)
 
     def retire(self) -> None:
         """Stop calling callbacks, and drop the queued events."""
@@ -156,7 +156,7 @@ class EndpointEvents(Entity):
         self._watches.append(watch)
         return watch
 
-    def _deadline_missed(self) -> None:
+    def _on_deadline_missed(self) -> None:
         self._notify(self._callbacks.deadline, self._deadline_info(self._count("deadline", 1), 1))
 
     def _notify(self, callback: EventCallback | None, info: object) -> None:
@@ -225,7 +225,7 @@ class PublisherEvents(EndpointEvents):
         qos = publisher.qos_profile
         lease_ns = limit_ns(qos.liveliness_lease_duration)
         if qos.liveliness is LivelinessPolicy.MANUAL_BY_TOPIC and lease_ns is not None:
-            self._lease = self._watch(lease_ns, self._liveliness_lost)
+            self._lease = self._watch(lease_ns, self._on_liveliness_lost)
 
     @property
     def wants_messages(self) -> bool:
@@ -255,7 +255,7 @@ class PublisherEvents(EndpointEvents):
         if self._lease is not None:
             self._lease.restart()
 
-    def _liveliness_lost(self) -> None:
+    def _on_liveliness_lost(self) -> None:
         if self._is_alive:
             self._is_alive = False
             self._liveliness_changed(-1)

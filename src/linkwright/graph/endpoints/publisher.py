@@ -94,7 +94,7 @@ class Publisher(TopicEndpoint[M]):
             if outside is not None:
                 outside(msg)
         else:
-            self._publish_watched(msg)
+            self._publish_complete(msg)
 
     @property
     def event_handlers(self) -> list[EventHandler]:
@@ -223,7 +223,7 @@ class Publisher(TopicEndpoint[M]):
             self.outside = send
             self._acknowledged = acknowledged if send is not None else None
 
-    def _publish_watched(self, message: Any) -> None:
+    def _publish_complete(self, message: Any) -> None:
         if self._copies and type(message) is not bytes:
             if not self._receivers and self._kept is None and self.outside is None and self.events is None:
                 return

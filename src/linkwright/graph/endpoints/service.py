@@ -214,7 +214,7 @@ class Service(IntrospectedEndpoint, Entity, Generic[Request, Response]):
 
         Returns None if the queue is empty.
         """
-        waiting = self._next_of(self._waiting)
+        waiting = self._take_from(self._waiting)
         return None if waiting is None else partial(self._answer, *waiting)
 
     def send_response(self, response: Response, header: Reply) -> None:
@@ -228,7 +228,7 @@ class Service(IntrospectedEndpoint, Entity, Generic[Request, Response]):
             TypeError: the response is not of the service's type.
         """
         self.check_message(response, "Response")
-        header(copy_of(response) if self.node.copies_messages else response)
+        header(deep_copy(response) if self.node.copies_messages else response)
 
     def retire(self) -> None:
         """Remove the service from the graph, and drop queued requests without a response."""
@@ -240,7 +240,7 @@ class Service(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         events = self.service_events
         if events is not None:
             events.publish_event(EventType.REQUEST_RECEIVED, request_id, request=request)
-            reply = partial(self._reply_watched, reply, request_id)
+            reply = partial(self._reply_with_event, reply, request_id)
         if self._replying:
             return self.callback(request, partial(self.send_response, header=reply))
         response = self.callback(request, self.srv_type.Response())
@@ -252,7 +252,7 @@ class Service(IntrospectedEndpoint, Entity, Generic[Request, Response]):
     async def _answer_later(self, response: Awaitable[Response], reply: Reply) -> None:
         self.send_response(await response, reply)
 
-    def _reply_watched(self, reply: Reply, request_id: RequestId, response: Response) -> None:
+    def _reply_with_event(self, reply: Reply, request_id: RequestId, response: Response) -> None:
         reply(response)
         events = self.service_events
         if events is not None:
@@ -262,7 +262,7 @@ class Service(IntrospectedEndpoint, Entity, Generic[Request, Response]):
 M = TypeVar("M")
 
 
-def copy_of(message: M) -> M:
+def deep_copy(message: M) -> M:
     """Return a deep copy of a message, made by serialization and deserialization.
 
     Raises:
@@ -359,14 +359,14 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         self.check_alive()
         self.check_message(request, "Request")
         if self.node.copies_messages:
-            request = copy_of(request)
+            request = deep_copy(request)
         future: Future[Response] = Future()
         future.source = self
         self._pending[future] = _do_nothing
         if not self._send(future, request):
             with self._lock:
                 self._unsent.append((future, request))
-            self._send_waiting()
+            self._send_queued()
         return future
 
     def call(self, request: Request, timeout_sec: float | None = None) -> Response | None:
@@ -418,7 +418,7 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
 
         Returns None if the queue is empty.
         """
-        return self._next_of(self._endings)
+        return self._take_from(self._endings)
 
     def retire(self) -> None:
         """Remove the client from the graph, and cancel all requests."""
@@ -438,7 +438,7 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
     def set_server(self, server: Service[Request, Response] | None) -> None:
         """Set the service of this process that receives the requests; None if there is none."""
         self._server = server
-        self._send_waiting()
+        self._send_queued()
 
     def set_outside(self, outside: OutsideService | None) -> None:
         """Set the server in another process; None if there is none. Called by the transport.
@@ -446,10 +446,10 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         The client uses this server only if this process has none.
         """
         self.outside = outside
-        self._send_waiting()
+        self._send_queued()
         self.node.graph.notify_change()
 
-    def _send_waiting(self) -> None:
+    def _send_queued(self) -> None:
         while self._server is not None or self.outside is not None:
             with self._lock:
                 if not self._unsent:

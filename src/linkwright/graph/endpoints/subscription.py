@@ -170,7 +170,7 @@ class Subscription(TopicEndpoint[M], Entity):
         self._on_lost = lost
         self.node.graph.watch_lost()
 
-    def publisher_lost(self, publisher: EndpointInfo) -> None:
+    def queue_lost_publisher(self, publisher: EndpointInfo) -> None:
         """Queue the notification that a publisher of another process is lost.
 
         The graph calls this, from any thread.
@@ -197,7 +197,7 @@ class Subscription(TopicEndpoint[M], Entity):
         if self.events is not None:
             self.events.set_outside_liveliness(alive, not_alive)
 
-    def lost_outside(self, count: int) -> None:
+    def count_lost_outside(self, count: int) -> None:
         """Count lost messages from other processes. Called by the transport."""
         if self.events is not None:
             self.events.count_lost(count)
@@ -276,7 +276,7 @@ class Subscription(TopicEndpoint[M], Entity):
         try:
             message = waiting.popleft()
         except IndexError:
-            return self._next_lost()
+            return self._take_lost_publisher()
         more = [waiting.popleft() for _ in range(len(waiting))] if self._together else ()
         if waiting or self._lost:
             self.announce()
@@ -300,8 +300,8 @@ class Subscription(TopicEndpoint[M], Entity):
         if self.events is not None:
             self.events.retire()
 
-    def _next_lost(self) -> Callable[[], object] | None:
-        publisher = self._next_of(self._lost)
+    def _take_lost_publisher(self) -> Callable[[], object] | None:
+        publisher = self._take_from(self._lost)
         return None if publisher is None or self._on_lost is None else partial(self._on_lost, publisher)
 
     def _call_for_each(self, items: list[Any]) -> None:

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-_POSTPONED_AT_MOST = 2
+_MAX_POSTPONEMENTS = 2
 
 
 class Context(Protocol):
@@ -159,7 +159,7 @@ class Executor:
 
     def spin(self) -> None:
         """Run callbacks until the executor or the context is shut down."""
-        while not self._is_shutdown and self._context_ok():
+        while not self._is_shutdown and self._is_context_ok():
             self.spin_once()
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
@@ -180,7 +180,7 @@ class Executor:
         report_self_wait(future)
         future.add_waiter(self.wake)
         deadline_ns = deadline_after(timeout_sec)
-        while not (future.ended() or self._is_shutdown) and self._context_ok():
+        while not (future.ended() or self._is_shutdown) and self._is_context_ok():
             if deadline_ns is None:
                 self.spin_once_until_future_complete(future)
                 continue
@@ -262,7 +262,7 @@ class Executor:
     ) -> None:
         self.shutdown()
 
-    def _context_ok(self) -> bool:
+    def _is_context_ok(self) -> bool:
         return self._context is None or self._context.ok()
 
     def _wait_for_ready_callbacks(
@@ -300,7 +300,7 @@ class Executor:
         while True:
             if self._is_shutdown:
                 raise ShutdownException
-            if not self._context_ok():
+            if not self._is_context_ok():
                 raise ExternalShutdownException
             if condition is not None and condition():
                 raise ConditionReachedException
@@ -336,7 +336,7 @@ class Executor:
         received the feedback if the goal was executed in the meantime. A response is postponed a limited number of
         times.
         """
-        if answer.postponed >= _POSTPONED_AT_MOST or not self._work.has_ready():
+        if answer.postponed >= _MAX_POSTPONEMENTS or not self._work.has_ready():
             answer.postponed = 0
             return False
         answer.postponed += 1
@@ -404,10 +404,10 @@ class Executor:
         if released:
             self._work.add_first(released)
 
-    def _spinner_begins(self) -> None:
+    def _begin_spinning(self) -> None:
         self._spinners.append(threading.get_ident())
 
-    def _spinner_ends(self) -> None:
+    def _end_spinning(self) -> None:
         with self._spinners_changed:
             self._spinners.remove(threading.get_ident())
             if self._is_shutdown:
@@ -437,28 +437,28 @@ class SpinningExecutor(Executor):
 
     def spin(self) -> None:
         """Run callbacks until the executor or the context is shut down."""
-        self._spinner_begins()
+        self._begin_spinning()
         try:
-            while not self._is_shutdown and self._context_ok():
+            while not self._is_shutdown and self._is_context_ok():
                 self._turn(None, None)
         finally:
-            self._spinner_ends()
+            self._end_spinning()
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
         """Wait for a callback, then run it or have it run; see ``Executor.spin_once``."""
-        self._single_turn(timeout_sec, None)
+        self._spin_single(timeout_sec, None)
 
     def spin_once_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
         """Do the same as `spin_once`, but stop waiting when the future is done."""
         future.add_waiter(self.wake)
-        self._single_turn(timeout_sec, future.ended)
+        self._spin_single(timeout_sec, future.ended)
 
-    def _single_turn(self, timeout_sec: float | None, condition: Callable[[], bool] | None) -> None:
-        self._spinner_begins()
+    def _spin_single(self, timeout_sec: float | None, condition: Callable[[], bool] | None) -> None:
+        self._begin_spinning()
         try:
             self._turn(deadline_after(timeout_sec), condition)
         finally:
-            self._spinner_ends()
+            self._end_spinning()
 
     @abstractmethod
     def _turn(self, deadline_ns: int | None, condition: Callable[[], bool] | None) -> None:

@@ -76,21 +76,21 @@ class MultiThreadedExecutor(SpinningExecutor):
 
     def _turn(self, deadline_ns: int | None, condition: Callable[[], bool] | None) -> None:
         while not self._workers.has_room and not self._faults:
-            if self._is_shutdown or not self._context_ok() or (condition is not None and condition()):
+            if self._is_shutdown or not self._is_context_ok() or (condition is not None and condition()):
                 return
             if deadline_ns is not None and time.monotonic_ns() >= deadline_ns:
                 return
             self._work.wait_for_wake(deadline_ns)
         self._raise_faults()
         try:
-            item = self._next(deadline_ns, partial(self._ends_wait, condition))
+            item = self._next(deadline_ns, partial(self._should_end_wait, condition))
         except (ExternalShutdownException, ShutdownException, TimeoutException, ConditionReachedException):
             pass
         else:
             self._workers.submit(partial(self._run, item))
         self._raise_faults()
 
-    def _ends_wait(self, condition: Callable[[], bool] | None) -> bool:
+    def _should_end_wait(self, condition: Callable[[], bool] | None) -> bool:
         return bool(self._faults) or (condition is not None and condition())
 
     def _raise_faults(self) -> None:
@@ -107,10 +107,10 @@ class MultiThreadedExecutor(SpinningExecutor):
                 self._execute(item)
             except BaseException as fault:  # noqa: BLE001  # raised in the thread that spins
                 self._faults.append(fault)
-            item = self._next_of_worker() if self._is_spinning else None
+            item = self._take_for_worker() if self._is_spinning else None
 
-    def _next_of_worker(self) -> Any:
-        while not (self._is_shutdown or self._faults) and self._context_ok():
+    def _take_for_worker(self) -> Any:
+        while not (self._is_shutdown or self._faults) and self._is_context_ok():
             item = self._work.take()
             if item is None or self._admit(item):
                 return item

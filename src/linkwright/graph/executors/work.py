@@ -16,7 +16,7 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 _LONGEST_WAIT_S = 0.1 if os.name == "nt" else 3600.0
 """Where a signal does not end a wait by itself (Windows), the wait is cut into pieces."""
 
-_MANY_CANCELLED = 64
+_MAX_CANCELLED = 64
 
 
 class ScheduledCall:
@@ -64,12 +64,12 @@ class WorkQueue:
         """Add an item at the end."""
         self._ready.append(item)
         if self._sleepers:
-            self._rouse()
+            self._wake_sleepers()
 
     def add_first(self, items: list[Any]) -> None:
         """Put items back at the beginning, in their order."""
         self._ready.extendleft(reversed(items))
-        self._rouse()
+        self._wake_sleepers()
 
     def has_ready(self) -> bool:
         """Return whether an item is ready."""
@@ -81,7 +81,7 @@ class WorkQueue:
         Returns None if the queue is empty.
         """
         if self._alarms and self._alarms[0].steady_ns <= time.monotonic_ns():
-            self._call_due()
+            self._run_due_alarms()
         try:
             return self._ready.popleft()
         except IndexError:
@@ -101,7 +101,7 @@ class WorkQueue:
     def wake(self) -> None:
         """End the wait of all waiting threads; if no thread is waiting, end the next wait."""
         self._woken = True
-        self._rouse()
+        self._wake_sleepers()
 
     def call_at(self, steady_ns: int, callback: Callable[[], None]) -> ScheduledCall:
         """Schedule a callback for a value of ``time.monotonic_ns``.
@@ -114,13 +114,13 @@ class WorkQueue:
             heapq.heappush(self._alarms, call)
             is_next = self._alarms[0] is call
         if is_next:
-            self._rouse()
+            self._wake_sleepers()
         return call
 
     def note_cancelled(self) -> None:
         """Count a cancelled alarm; when there are many, remove them."""
         self._cancelled += 1
-        if self._cancelled > _MANY_CANCELLED:
+        if self._cancelled > _MAX_CANCELLED:
             with self._alarms_lock:
                 if self._cancelled * 2 > len(self._alarms):
                     self._alarms = [call for call in self._alarms if call.callback is not None]
@@ -134,7 +134,7 @@ class WorkQueue:
             self._alarms.clear()
             self._cancelled = 0
 
-    def _call_due(self) -> None:
+    def _run_due_alarms(self) -> None:
         while True:
             with self._alarms_lock:
                 if not self._alarms or self._alarms[0].steady_ns > time.monotonic_ns():
@@ -154,7 +154,7 @@ class WorkQueue:
             if self._woken or (self._ready and not until_wake):
                 return
             if not until_wake:
-                deadline_ns = self._first_of_alarm_and(deadline_ns)
+                deadline_ns = self._earliest_wake_ns(deadline_ns)
             seconds = _LONGEST_WAIT_S
             if deadline_ns is not None:
                 seconds = min((deadline_ns - time.monotonic_ns()) / NANOSECONDS_PER_SECOND, seconds)
@@ -165,13 +165,13 @@ class WorkQueue:
             with suppress(ValueError):  # already removed by the thread that woke it
                 self._sleepers.remove(sleeper)
 
-    def _first_of_alarm_and(self, deadline_ns: int | None) -> int | None:
+    def _earliest_wake_ns(self, deadline_ns: int | None) -> int | None:
         with self._alarms_lock:
             if self._alarms and (deadline_ns is None or self._alarms[0].steady_ns < deadline_ns):
                 return self._alarms[0].steady_ns
         return deadline_ns
 
-    def _rouse(self) -> None:
+    def _wake_sleepers(self) -> None:
         while self._sleepers:
             with suppress(IndexError):  # another thread removed it
                 self._sleepers.popleft().release()

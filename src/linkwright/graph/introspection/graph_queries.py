@@ -217,7 +217,7 @@ class GraphQueries:
         Args:
             no_demangle: whether to return names and types as they are on the wire.
         """
-        return _mangled(names_and_types(self.endpoints(), _PUBLISHER, _SUBSCRIPTION), no_demangle)
+        return _mangle(names_and_types(self.endpoints(), _PUBLISHER, _SUBSCRIPTION), no_demangle)
 
     def get_service_names_and_types(self) -> NamesAndTypes:
         """Return the sorted service names, each with the names of its types."""
@@ -229,11 +229,11 @@ class GraphQueries:
 
     def get_action_server_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
         """Return the actions that a node serves; see `get_publisher_names_and_types_by_node`."""
-        return action_names_and_types(self._of_node(node_name, node_namespace), _PUBLISHER)
+        return action_names_and_types(self._endpoints_of_node(node_name, node_namespace), _PUBLISHER)
 
     def get_action_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
         """Return the actions of a node's clients; see `get_publisher_names_and_types_by_node`."""
-        return action_names_and_types(self._of_node(node_name, node_namespace), _SUBSCRIPTION)
+        return action_names_and_types(self._endpoints_of_node(node_name, node_namespace), _SUBSCRIPTION)
 
     def get_publisher_names_and_types_by_node(
         self, node_name: str, node_namespace: str, no_demangle: bool = False
@@ -248,45 +248,49 @@ class GraphQueries:
         Raises:
             NodeNotFoundError: there is no such node.
         """
-        return _mangled(names_and_types(self._of_node(node_name, node_namespace), _PUBLISHER), no_demangle)
+        return _mangle(names_and_types(self._endpoints_of_node(node_name, node_namespace), _PUBLISHER), no_demangle)
 
     def get_subscriber_names_and_types_by_node(
         self, node_name: str, node_namespace: str, no_demangle: bool = False
     ) -> NamesAndTypes:
         """Return the topics that a node subscribes to; see `get_publisher_names_and_types_by_node`."""
-        return _mangled(names_and_types(self._of_node(node_name, node_namespace), _SUBSCRIPTION), no_demangle)
+        return _mangle(names_and_types(self._endpoints_of_node(node_name, node_namespace), _SUBSCRIPTION), no_demangle)
 
     def get_service_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
         """Return the services that a node serves; see `get_publisher_names_and_types_by_node`."""
-        return names_and_types(self._of_node(node_name, node_namespace), _SERVICE)
+        return names_and_types(self._endpoints_of_node(node_name, node_namespace), _SERVICE)
 
     def get_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
         """Return the services of a node's clients; see `get_publisher_names_and_types_by_node`."""
-        return names_and_types(self._of_node(node_name, node_namespace), _CLIENT)
+        return names_and_types(self._endpoints_of_node(node_name, node_namespace), _CLIENT)
 
     def get_publishers_info_by_topic(self, topic: str) -> list[TopicEndpointInfo]:
         """Return the publishers of a topic, given by its absolute name."""
-        return [TopicEndpointInfo.of(_with_type_hash(endpoint)) for endpoint in self._of_name(topic, _PUBLISHER)]
+        return [
+            TopicEndpointInfo.of(_add_type_hash(endpoint)) for endpoint in self._endpoints_by_name(topic, _PUBLISHER)
+        ]
 
     def get_subscriptions_info_by_topic(self, topic: str) -> list[TopicEndpointInfo]:
         """Return the subscriptions to a topic, given by its absolute name."""
-        return [TopicEndpointInfo.of(_with_type_hash(endpoint)) for endpoint in self._of_name(topic, _SUBSCRIPTION)]
+        return [
+            TopicEndpointInfo.of(_add_type_hash(endpoint)) for endpoint in self._endpoints_by_name(topic, _SUBSCRIPTION)
+        ]
 
     def count_publishers(self, topic: str) -> int:
         """Return the number of publishers of a topic, given by its absolute name."""
-        return len(self._of_name(topic, _PUBLISHER))
+        return len(self._endpoints_by_name(topic, _PUBLISHER))
 
     def count_subscribers(self, topic: str) -> int:
         """Return the number of subscriptions to a topic, given by its absolute name."""
-        return len(self._of_name(topic, _SUBSCRIPTION))
+        return len(self._endpoints_by_name(topic, _SUBSCRIPTION))
 
     def count_services(self, service: str) -> int:
         """Return the number of servers of a service, given by its absolute name."""
-        return len(self._of_name(service, _SERVICE))
+        return len(self._endpoints_by_name(service, _SERVICE))
 
     def count_clients(self, service: str) -> int:
         """Return the number of clients of a service, given by its absolute name."""
-        return len(self._of_name(service, _CLIENT))
+        return len(self._endpoints_by_name(service, _CLIENT))
 
     # --- waiting -----------------------------------------------------------------------------------------------------
 
@@ -342,7 +346,7 @@ class GraphQueries:
         full_name = "/" + fully_qualified_node_name.removeprefix("/")
         return self.wait_until(lambda: any(identity.full_name == full_name for identity in self.identities()), timeout)
 
-    def _of_node(self, name: str, namespace: str) -> list[EndpointInfo]:
+    def _endpoints_of_node(self, name: str, namespace: str) -> list[EndpointInfo]:
         if not any((identity.name, identity.namespace) == (name, namespace) for identity in self.identities()):
             raise NodeNotFoundError(name, namespace)
         return [
@@ -351,7 +355,7 @@ class GraphQueries:
             if endpoint.node is not None and (endpoint.node.name, endpoint.node.namespace) == (name, namespace)
         ]
 
-    def _of_name(self, name: str, kind: EndpointKind) -> list[EndpointInfo]:
+    def _endpoints_by_name(self, name: str, kind: EndpointKind) -> list[EndpointInfo]:
         return self._matching_endpoints(lambda endpoint: endpoint.kind is kind and endpoint.name == name)
 
     def _matching_endpoints(self, are_asked_for: Callable[[Endpoint | EndpointInfo], bool]) -> list[EndpointInfo]:
@@ -366,7 +370,7 @@ class GraphQueries:
 _LONGEST_WAIT_S = 0.1
 
 
-def _with_type_hash(endpoint: EndpointInfo) -> EndpointInfo:
+def _add_type_hash(endpoint: EndpointInfo) -> EndpointInfo:
     """Return the description with the type hash added, which is computed only when needed."""
     if endpoint.type_hash or not endpoint.local:
         return endpoint
@@ -375,12 +379,12 @@ def _with_type_hash(endpoint: EndpointInfo) -> EndpointInfo:
     return replace(endpoint, type_hash=type_hash(get_interface(endpoint.type_name)))
 
 
-def _mangled(found: NamesAndTypes, no_demangle: bool) -> NamesAndTypes:
+def _mangle(found: NamesAndTypes, no_demangle: bool) -> NamesAndTypes:
     if not no_demangle:
         return found
-    return [(f"rt{name}", [_wire_type(type_name) for type_name in types]) for name, types in found]
+    return [(f"rt{name}", [_wire_type_name(type_name) for type_name in types]) for name, types in found]
 
 
-def _wire_type(type_name: str) -> str:
+def _wire_type_name(type_name: str) -> str:
     namespace, name = split(type_name)
     return f"{namespace.replace('/', '::')}::dds_::{name}_"

@@ -21,7 +21,7 @@ _TYPE = "type_description_interfaces/srv/GetTypeDescription"
 _HASH = re.compile(r"RIHS01_[0-9a-f]{64}")
 
 
-def is_enabled_by_default(variables: Mapping[str, str] = os.environ) -> bool:
+def has_type_descriptions_by_default(variables: Mapping[str, str] = os.environ) -> bool:
     """Return whether nodes of the distribution ``ROS_DISTRO`` describe their types.
 
     This means that they have the type description service. If ``ROS_DISTRO`` is not set, Humble is assumed.
@@ -48,7 +48,7 @@ class TypeDescriptions:
         if not _HASH.fullmatch(request.type_hash):
             response.failure_reason = "Failed to parse type hash"
             return response
-        found = next((name for name in self._types_in_use() if _is_asked_for(name, request)), None)
+        found = next((name for name in self._types_in_use() if _is_requested(name, request)), None)
         if found is None:
             response.failure_reason = "Type not currently in use by this node"
             return response
@@ -73,7 +73,7 @@ class TypeDescriptions:
         return iter(dict.fromkeys(endpoint.type_name for endpoint in self._handle.parts(Endpoint)))
 
 
-def _is_asked_for(name: str, request: Any) -> bool:
+def _is_requested(name: str, request: Any) -> bool:
     if request.type_name not in ("", name):
         return False
     from linkwright.messages import type_hash

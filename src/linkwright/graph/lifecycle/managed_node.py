@@ -150,32 +150,32 @@ class LifecycleNodeMixin(ManagedEntity):
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Configure the managed entities."""
-        return self._ask_entities(lambda entity: entity.on_configure(state))
+        return self._call_entities(lambda entity: entity.on_configure(state))
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Clean up the managed entities."""
-        return self._ask_entities(lambda entity: entity.on_cleanup(state))
+        return self._call_entities(lambda entity: entity.on_cleanup(state))
 
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Shut down the managed entities."""
-        return self._ask_entities(lambda entity: entity.on_shutdown(state))
+        return self._call_entities(lambda entity: entity.on_shutdown(state))
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Activate the managed entities."""
-        return self._ask_entities(lambda entity: entity.on_activate(state))
+        return self._call_entities(lambda entity: entity.on_activate(state))
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Deactivate the managed entities."""
-        return self._ask_entities(lambda entity: entity.on_deactivate(state))
+        return self._call_entities(lambda entity: entity.on_deactivate(state))
 
     def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Handle an error in a transition.
 
         SUCCESS leads back to the unconfigured state; any other return value finalizes the node.
         """
-        return self._ask_entities(lambda entity: entity.on_error(state))
+        return self._call_entities(lambda entity: entity.on_error(state))
 
-    def _ask_entities(self, ask: Callable[[ManagedEntity], TransitionCallbackReturn]) -> TransitionCallbackReturn:
+    def _call_entities(self, ask: Callable[[ManagedEntity], TransitionCallbackReturn]) -> TransitionCallbackReturn:
         for entity in tuple(self._managed_entities):
             verdict = ask(entity)
             if verdict != TransitionCallbackReturn.SUCCESS:
@@ -195,7 +195,7 @@ class LifecycleNodeMixin(ManagedEntity):
         If the callback results in an error, the error processing runs, too.
         """
         initial = self._state_machine.state
-        self._enter(transition)
+        self._enter_state(transition)
         verdict = self._call(initial)
         self._end(verdict)
         if verdict == TransitionCallbackReturn.ERROR:
@@ -205,7 +205,7 @@ class LifecycleNodeMixin(ManagedEntity):
     def _end(self, verdict: TransitionCallbackReturn) -> None:
         ending = self._state_machine.by_label(verdict.to_label())
         assert ending is not None
-        self._enter(ending)
+        self._enter_state(ending)
 
     def _call(self, initial: LifecycleState) -> TransitionCallbackReturn:
         node: Any = self
@@ -222,7 +222,7 @@ class LifecycleNodeMixin(ManagedEntity):
         )
         return TransitionCallbackReturn.ERROR
 
-    def _enter(self, transition: Transition) -> None:
+    def _enter_state(self, transition: Transition) -> None:
         self._state_machine.state = transition.goal
         if self._transition_events is None:
             return

@@ -28,7 +28,7 @@ class LogLevel(IntEnum):
     FATAL = 50
 
 
-def level_named(name: str) -> LogLevel | None:
+def level_from_name(name: str) -> LogLevel | None:
     """Return the severity with a name, in any case; None if the name is unknown."""
     return LogLevel.__members__.get(name.upper())
 
@@ -208,7 +208,7 @@ class Logger:
             self._calls[key] = call = CallFilter(severity, name, filters, self._steady_ns)
         else:
             call.check_unchanged(severity, name, filters)
-        if not enabled or not call.lets_through():
+        if not enabled or not call.should_log():
             return False
         code = frame.f_code
         record = LogRecord(
@@ -336,7 +336,7 @@ class CallFilter:
                 raise ValueError("Requested logging filters cannot be changed between calls.")
             raise ValueError("Logging filter parameters cannot be changed between calls.")
 
-    def lets_through(self) -> bool:
+    def should_log(self) -> bool:
         """Count a call, and return whether it is to be logged."""
         if self._duration_s:
             now_s = self._now_s()

@@ -83,7 +83,7 @@ class Entity(Part, ABC):
                 self._announced = True
                 dispatcher.ready(self)
 
-    def _next_of(self, queue: deque[T]) -> T | None:
+    def _take_from(self, queue: deque[T]) -> T | None:
         """Remove the oldest item from one of the entity's queues and return it; None if it is empty.
 
         If items remain in the queue, the entity announces itself again.
@@ -167,9 +167,9 @@ def accepts(callback: Callable[..., object], count: int, *, unknown: bool) -> bo
     return True
 
 
-_CALLS_A_TURN = 256
-_SECONDS_A_TURN = 0.002
-_MOST_TURNS = 1000
+_MAX_CALLS_PER_TURN = 256
+_MAX_TURN_SECONDS = 0.002
+_MAX_TURNS = 1000
 """How many turns without a call `settle` waits for coroutines to become idle."""
 
 
@@ -194,7 +194,7 @@ class LoopDispatcher:
         self.on_error: Callable[[Entity, Exception], None] = Entity.report
         """Handles the error of a callback; it is logged unless this is changed."""
         self._tasks: dict[asyncio.Task[None], NodeHandle] = {}
-        self._held: dict[CallbackGroup, _Hold] = {}
+        self._held: dict[CallbackGroup, _GroupState] = {}
         timebase.attach(self)
 
     @property
@@ -220,8 +220,8 @@ class LoopDispatcher:
     def call_at(self, steady_ns: int, callback: Callable[[], None]) -> Alarm:
         """Schedule a callback for a time of the timebase's steady clock."""
         if threading.get_ident() == self._thread:
-            return self._timebase.call_at(self._loop, steady_ns, partial(self._alarmed, callback))
-        return _AlarmFromElsewhere(self, steady_ns, callback)
+            return self._timebase.call_at(self._loop, steady_ns, partial(self._run_alarm, callback))
+        return _ThreadsafeAlarm(self, steady_ns, callback)
 
     def call_threadsafe(self, callback: Callable[[], None]) -> None:
         """Schedule a callback on the loop, from any thread. Does nothing if the loop has ended."""
@@ -241,11 +241,11 @@ class LoopDispatcher:
         """
         await asyncio.sleep(0)
         turns = 0
-        while self._ready or (self._others_are_ready() and turns < _MOST_TURNS):
+        while self._ready or (self._has_other_work() and turns < _MAX_TURNS):
             turns = 0 if self._ready else turns + 1
             await asyncio.sleep(0)
 
-    def _others_are_ready(self) -> bool:
+    def _has_other_work(self) -> bool:
         # asyncio's own loop has its queue in this attribute; a loop without the attribute is assumed to be idle.
         return bool(getattr(self._loop, "_ready", ()))
 
@@ -275,7 +275,7 @@ class LoopDispatcher:
         if self._ready and not self._is_scheduled:
             self._schedule()
 
-    def _alarmed(self, callback: Callable[[], None]) -> None:
+    def _run_alarm(self, callback: Callable[[], None]) -> None:
         """Run an alarm's callback and, in the same loop iteration, the calls that it makes ready."""
         if self._is_scheduled:
             callback()
@@ -294,9 +294,9 @@ class LoopDispatcher:
     def _run_turn(self) -> None:
         ready = self._ready
         now = time.perf_counter
-        end = now() + _SECONDS_A_TURN
+        end = now() + _MAX_TURN_SECONDS
         try:
-            for _ in range(_CALLS_A_TURN):
+            for _ in range(_MAX_CALLS_PER_TURN):
                 if not ready:
                     break
                 entity = ready.popleft()
@@ -332,7 +332,7 @@ class LoopDispatcher:
     def _start(self, entity: Entity, coroutine: Coroutine[Any, Any, object]) -> None:
         group = entity.callback_group
         group.beginning_execution(entity)
-        self._held.setdefault(group, _Hold()).coroutines += 1
+        self._held.setdefault(group, _GroupState()).coroutines += 1
         task = self._loop.create_task(self._run(entity, coroutine))
         self._tasks[task] = entity.node
 
@@ -363,14 +363,14 @@ class LoopDispatcher:
 
 
 @dataclass(slots=True)
-class _Hold:
+class _GroupState:
     """The running coroutines of a callback group, and the entities that wait for their end."""
 
     coroutines: int = 0
     waiting: list[Entity] = field(default_factory=list)
 
 
-class _AlarmFromElsewhere:
+class _ThreadsafeAlarm:
     """An alarm that was set by a thread other than the loop's thread."""
 
     __slots__ = ("_alarm", "_cancelled", "_dispatcher")

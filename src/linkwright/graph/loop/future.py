@@ -58,8 +58,8 @@ def report_self_wait(future: WaitableFuture) -> None:
     if not isinstance(group, MutuallyExclusiveCallbackGroup) or group.can_execute(client):
         return  # no callback of the group is running
     frames = list(_frames(sys._getframe(1)))
-    running = next((frame for frame in frames if _entity_of(frame) is not None), None)
-    if running is None or _entity_of(running).callback_group is not group:
+    running = next((frame for frame in frames if _running_entity(frame) is not None), None)
+    if running is None or _running_entity(running).callback_group is not group:
         return
     own = [frame for frame in frames[: frames.index(running)] if not frame.f_code.co_filename.startswith(_OURS)]
     if not own:
@@ -77,7 +77,7 @@ def report_self_wait(future: WaitableFuture) -> None:
     )
 
 
-def _entity_of(frame: FrameType) -> Any:
+def _running_entity(frame: FrameType) -> Any:
     """Return the entity whose callback an executor's frame runs; None for any other frame."""
     return frame.f_locals.get(RUNNER) if RUNNER in frame.f_code.co_varnames else None
 

@@ -301,7 +301,7 @@ class Remappings:
     __slots__ = ("_rules",)
 
     def __init__(self, rules: Iterable[tuple[str, str]] = ()) -> None:
-        self._rules = tuple(_taken_apart(source, target) for source, target in rules)
+        self._rules = tuple(_parse_rule(source, target) for source, target in rules)
 
     def node_name(self, name: str) -> str:
         """Return the remapped name of a node; the given name if no rule applies."""
@@ -342,7 +342,7 @@ class Remappings:
         return full_name
 
 
-def _taken_apart(source: str, target: str) -> _Rule:
+def _parse_rule(source: str, target: str) -> _Rule:
     node = None
     before, colon, rest = source.partition(":")
     if colon and not rest.startswith("//"):

@@ -104,25 +104,25 @@ class _Reader:
 
     def read(self) -> ParameterRules:
         self._advance()
-        if self._is("StreamEnd"):
+        if self._is_event("StreamEnd"):
             return self._rules
-        if self._is("Scalar") and not self._event.value:
+        if self._is_event("Scalar") and not self._event.value:
             return self._rules
-        if not self._is("MappingStart"):
+        if not self._is_event("MappingStart"):
             raise self._error(phrase("a parameter file must be a mapping"), _FORM)
         self._read_names(())
         return self._rules
 
     def read_value(self, name: str) -> Any:
         self._advance()
-        if self._is("StreamEnd"):
+        if self._is_event("StreamEnd"):
             return ""
-        if self._is("MappingStart"):
+        if self._is_event("MappingStart"):
             raise self._error(
                 phrase("the value of parameter '{name}' is a mapping", name=name),
                 phrase("set each entry as a parameter of its own, such as gains.p"),
             )
-        if self._is("SequenceStart"):
+        if self._is_event("SequenceStart"):
             return self._read_list(name)
         return self._read_scalar(name)
 
@@ -130,7 +130,7 @@ class _Reader:
         import yaml
 
         try:
-            for event in yaml.parse(self._source.text, Loader=_loader()):
+            for event in yaml.parse(self._source.text, Loader=_loader_class()):
                 if not isinstance(event, (yaml.StreamStartEvent, yaml.DocumentStartEvent, yaml.DocumentEndEvent)):
                     yield event
         except yaml.YAMLError as error:
@@ -143,7 +143,7 @@ class _Reader:
                 phrase("aliases are not supported in parameter files"), phrase("write the value instead of the alias")
             )
 
-    def _is(self, kind: str) -> bool:
+    def _is_event(self, kind: str) -> bool:
         return type(self._event).__name__ == f"{kind}Event"
 
     def _read_names(self, above: tuple[str, ...]) -> None:
@@ -152,7 +152,7 @@ class _Reader:
         The current event is the start of the mapping.
         """
         self._advance()
-        while not self._is("MappingEnd"):
+        while not self._is_event("MappingEnd"):
             key = self._read_key()
             if key == PARAMETERS_KEY:
                 if not above:
@@ -163,9 +163,9 @@ class _Reader:
                 pattern = "/" + "/".join(above)
                 self._rules.section(pattern)
                 self._advance()
-                if self._is("MappingStart"):
+                if self._is_event("MappingStart"):
                     self._read_parameters("", pattern)
-                elif not (self._is("Scalar") and not self._event.value):
+                elif not (self._is_event("Scalar") and not self._event.value):
                     raise self._error(
                         phrase("'{parameters_key}' must be a mapping of names to values", parameters_key=PARAMETERS_KEY)
                     )
@@ -173,7 +173,7 @@ class _Reader:
                 parts = tuple(part for part in key.split("/") if part)
                 self._check_names(key, parts)
                 self._advance()
-                if not self._is("MappingStart"):
+                if not self._is_event("MappingStart"):
                     raise self._error(
                         phrase("'{key}' has a value before '{parameters_key}'", key=key, parameters_key=PARAMETERS_KEY),
                         did_you_mean(key, [PARAMETERS_KEY]) or _FORM,
@@ -184,18 +184,18 @@ class _Reader:
     def _read_parameters(self, prefix: str, pattern: str) -> None:
         """Read a mapping of parameter names. The current event is the start of the mapping."""
         self._advance()
-        while not self._is("MappingEnd"):
+        while not self._is_event("MappingEnd"):
             name = prefix + self._read_key()
             self._advance()
-            if self._is("MappingStart"):
+            if self._is_event("MappingStart"):
                 self._read_parameters(f"{name}.", pattern)
-            elif self._is("SequenceStart"):
-                self._take_list(name, pattern)
+            elif self._is_event("SequenceStart"):
+                self._read_list_parameter(name, pattern)
             else:
                 self._rules.set(pattern, name, self._read_scalar(name))
             self._advance()
 
-    def _take_list(self, name: str, pattern: str) -> None:
+    def _read_list_parameter(self, name: str, pattern: str) -> None:
         """Read a list and set the parameter to it.
 
         If the list contains lists or mappings, the parameter is left out.
@@ -214,11 +214,11 @@ class _Reader:
         depth = 2
         while depth:
             self._advance()
-            depth += self._is("SequenceStart") + self._is("MappingStart")
-            depth -= self._is("SequenceEnd") + self._is("MappingEnd")
+            depth += self._is_event("SequenceStart") + self._is_event("MappingStart")
+            depth -= self._is_event("SequenceEnd") + self._is_event("MappingEnd")
 
     def _read_key(self) -> str:
-        if not self._is("Scalar"):
+        if not self._is_event("Scalar"):
             raise self._error(phrase("a name must be a word, not a list or a mapping"))
         key = str(self._event.value)
         if not key:
@@ -237,11 +237,11 @@ class _Reader:
     def _read_list(self, name: str) -> list[Any]:
         values: list[Any] = []
         self._advance()
-        while not self._is("SequenceEnd"):
-            if not self._is("Scalar"):
+        while not self._is_event("SequenceEnd"):
+            if not self._is_event("Scalar"):
                 message = (
                     phrase("the list of parameter '{name}' contains a list", name=name)
-                    if self._is("SequenceStart")
+                    if self._is_event("SequenceStart")
                     else phrase("the list of parameter '{name}' contains a mapping", name=name)
                 )
                 error = self._error(message, phrase("write only plain values in a list"))
@@ -298,7 +298,7 @@ class _Reader:
 
 
 @lru_cache(maxsize=1)
-def _loader() -> Any:
+def _loader_class() -> Any:
     import yaml
 
     return getattr(yaml, "CSafeLoader", yaml.SafeLoader)
@@ -354,7 +354,7 @@ def scalar_value(text: str, *, plain: bool) -> Any:
     if text in _SPECIAL or _FLOAT.fullmatch(text):
         return float(_SPECIAL.get(text, text))
     if _HEXADECIMAL_FLOAT.fullmatch(text) and any(character.isdigit() for character in text):
-        return _hexadecimal_float(text)
+        return _parse_hexadecimal_float(text)
     return text
 
 
@@ -364,7 +364,7 @@ def _integer(text: str) -> int:
     return int(text, base)
 
 
-def _hexadecimal_float(text: str) -> float | str:
+def _parse_hexadecimal_float(text: str) -> float | str:
     try:
         return float.fromhex(text.strip())
     except (ValueError, OverflowError):

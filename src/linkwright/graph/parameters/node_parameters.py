@@ -206,9 +206,9 @@ class NodeParameters:
         Raises:
             ParameterNotDeclaredException: a parameter is not declared; none is set.
         """
-        from linkwright.graph.parameters.parameter import result_message
+        from linkwright.graph.parameters.parameter import to_result_message
 
-        return result_message(self.__parameters.set_atomically(parameter_list))
+        return to_result_message(self.__parameters.set_atomically(parameter_list))
 
     def list_parameters(self, prefixes: list[str], depth: int) -> Any:
         """List the names and prefixes of parameters, as rcl_interfaces/msg/ListParametersResult.
@@ -244,10 +244,10 @@ class NodeParameters:
         Raises:
             ParameterNotDeclaredException: the parameter is not declared.
         """
-        from linkwright.graph.parameters.parameter import descriptor_message
+        from linkwright.graph.parameters.parameter import to_descriptor_message
 
         descriptor = self.__parameters.descriptor(name)
-        message = descriptor_message(descriptor)
+        message = to_descriptor_message(descriptor)
         if message is not descriptor and name in self.__parameters:
             self.__parameters.replace_descriptor(name, message)
         return message

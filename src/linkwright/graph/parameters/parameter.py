@@ -483,7 +483,7 @@ def interface(name: str) -> Any:
     return get_message(f"rcl_interfaces/msg/{name}")
 
 
-def descriptor_message(descriptor: Any) -> Any:
+def to_descriptor_message(descriptor: Any) -> Any:
     """Convert a descriptor to an rcl_interfaces/msg/ParameterDescriptor.
 
     A descriptor that is already such a message is returned unchanged.
@@ -506,7 +506,7 @@ def descriptor_message(descriptor: Any) -> Any:
     return message
 
 
-def result_message(verdict: Any) -> Any:
+def to_result_message(verdict: Any) -> Any:
     """Convert a result to an rcl_interfaces/msg/SetParametersResult.
 
     A result that is already such a message is returned unchanged.

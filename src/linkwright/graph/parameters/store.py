@@ -163,7 +163,7 @@ class ParameterStore:
         allow_undeclared: bool = False,
         on_change: Callable[[ParameterChange], None] = lambda _: None,
     ) -> None:
-        self.overrides: Mapping[str, Any] = dict(_flattened(overrides))
+        self.overrides: Mapping[str, Any] = dict(_flatten(overrides))
         self.allow_undeclared = allow_undeclared
         self._on_change = on_change
         self._parameters: dict[str, Parameter] = {}
@@ -294,9 +294,9 @@ class ParameterStore:
         undeclared = [parameter.name for parameter in chosen if parameter.name not in self._parameters]
         if undeclared and not self.allow_undeclared:
             raise ParameterNotDeclaredException(undeclared, self._parameters)
-        return self._set([self._as_declared(parameter) for parameter in chosen])
+        return self._set([self._with_declared_type(parameter) for parameter in chosen])
 
-    def _as_declared(self, parameter: Parameter) -> Parameter:
+    def _with_declared_type(self, parameter: Parameter) -> Parameter:
         """Return a parameter; if its value is an empty list, with the declared array type.
 
         The element type of an empty list cannot be determined from the value.
@@ -405,9 +405,9 @@ def _parameter(name: str, value: Any, descriptor: Any) -> Parameter:
         raise InvalidParameterValueException(name, value, str(error)) from None
 
 
-def _flattened(values: Mapping[str, Any], prefix: str = "") -> Iterable[tuple[str, Any]]:
+def _flatten(values: Mapping[str, Any], prefix: str = "") -> Iterable[tuple[str, Any]]:
     for name, value in values.items():
         if isinstance(value, Mapping):
-            yield from _flattened(value, f"{prefix}{name}.")
+            yield from _flatten(value, f"{prefix}{name}.")
         else:
             yield prefix + name, value

@@ -108,7 +108,7 @@ def best_available(qos: QoSProfile, others: Iterable[QoSProfile], *, publisher: 
         others: for a publisher, the profiles of the topic's subscriptions; for a subscription, those of its publishers.
         publisher: whether the profile is for a publisher, which offers as much as it can.
     """
-    if not _leaves_a_choice(qos):
+    if not _has_best_available(qos):
         return qos
     there = list(others)
     reliability, durability, liveliness = qos.reliability, qos.durability, qos.liveliness
@@ -146,7 +146,7 @@ def best_available(qos: QoSProfile, others: Iterable[QoSProfile], *, publisher: 
     )
 
 
-def _leaves_a_choice(qos: QoSProfile) -> bool:
+def _has_best_available(qos: QoSProfile) -> bool:
     return (
         qos.reliability is ReliabilityPolicy.BEST_AVAILABLE
         or qos.durability is DurabilityPolicy.BEST_AVAILABLE

@@ -167,7 +167,7 @@ class SteppedNode:
             topic: relative, absolute or private name.
             qos: the QoS; a number is a depth.
         """
-        return self._publish_as(msg_type, [topic], qos)
+        return self._create_output(msg_type, [topic], qos)
 
     def subscribe(
         self,
@@ -190,7 +190,7 @@ class SteppedNode:
             rest: called instead of the callback, with a warning, if a message contains NaN or an infinite number, which
                 would make the world unstable. None to accept such messages.
         """
-        self._subscribe_to(msg_type, [topic], self._received_by(topic, callback, rest, commander), qos, commander)
+        self._subscribe_to(msg_type, [topic], self._make_callback(topic, callback, rest, commander), qos, commander)
 
     def commander(self, rest: Callable[[], bool]) -> Commander:
         """Return an object that revokes the last command when its publisher is lost.
@@ -245,14 +245,14 @@ class SteppedNode:
             for endpoint in self._endpoints:
                 endpoint.destroy()
 
-    def _publish_as(self, msg_type: Any, names: Iterable[str], qos: QoSProfile | int) -> Output:
+    def _create_output(self, msg_type: Any, names: Iterable[str], qos: QoSProfile | int) -> Output:
         publishers = [
             self._node.create_publisher(msg_type, name, self._profile(name, "publisher", qos)) for name in names
         ]
         self._endpoints += publishers
         return Output(self._exchange, publishers, self.calls)
 
-    def _received_by(
+    def _make_callback(
         self,
         topic: str,
         callback: Callable[[Any], object],

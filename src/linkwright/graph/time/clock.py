@@ -46,7 +46,7 @@ class AlarmSetter(Protocol):
         """
 
 
-class Settling(Protocol):
+class SettlingDispatcher(Protocol):
     """Runs the callbacks of a graph, and allows waiting until they are done."""
 
     async def settle(self) -> None:
@@ -78,7 +78,7 @@ class Timebase(ABC):
         """Return the current system time."""
         return Time(nanoseconds=self.now_ns(), clock_type=ClockType.SYSTEM_TIME)
 
-    def attach(self, dispatcher: Settling) -> None:  # noqa: B027  # most need not know
+    def attach(self, dispatcher: SettlingDispatcher) -> None:  # noqa: B027  # most need not know
         """Attach the dispatcher of a graph that uses this timebase."""
 
 
@@ -109,7 +109,7 @@ class JumpClock(Timebase):
         self._steady_ns = 0
         self._alarms: list[ScheduledAlarm] = []
         self._numbers = count()
-        self._dispatchers: list[Settling] = []
+        self._dispatchers: list[SettlingDispatcher] = []
 
     def now_ns(self) -> int:
         """Return the simulated system time, in nanoseconds since the epoch."""
@@ -125,7 +125,7 @@ class JumpClock(Timebase):
         heapq.heappush(self._alarms, alarm)
         return alarm
 
-    def attach(self, dispatcher: Settling) -> None:
+    def attach(self, dispatcher: SettlingDispatcher) -> None:
         """Add a dispatcher, which finishes its work before each step of the clock."""
         self._dispatchers.append(dispatcher)
 
@@ -335,10 +335,10 @@ class Clock:
         """Schedule a call for a value of `timer_ns`. The callback must be short."""
         return dispatcher.call_at(timer_ns, callback)
 
-    def add_timer(self, timer: FollowsClock) -> None:
+    def add_timer(self, timer: ClockFollower) -> None:
         """Register a timer that is notified when the clock switches its time source or jumps back."""
 
-    def remove_timer(self, timer: FollowsClock) -> None:
+    def remove_timer(self, timer: ClockFollower) -> None:
         """Unregister a timer."""
 
     # --- sleeping ----------------------------------------------------------------------------------------------
@@ -395,7 +395,7 @@ class Clock:
                 handle.post_callback(jump)
 
 
-class FollowsClock(Protocol):
+class ClockFollower(Protocol):
     """The part of a timer that its clock needs."""
 
     def before_switch(self) -> None:
@@ -434,7 +434,7 @@ class ROSClock(Clock):
         self._override_ns = 0
         self._alarms: list[_SimulatedAlarm] = []
         self._numbers = count()
-        self._timers: dict[FollowsClock, None] = {}
+        self._timers: dict[ClockFollower, None] = {}
 
     @property
     def ros_time_is_active(self) -> bool:
@@ -463,11 +463,11 @@ class ROSClock(Clock):
                 return alarm
         return dispatcher.call_at(self.timebase.steady_ns(), callback)
 
-    def add_timer(self, timer: FollowsClock) -> None:
+    def add_timer(self, timer: ClockFollower) -> None:
         """Register a timer that is notified when the clock switches its time source or jumps back."""
         self._timers[timer] = None
 
-    def remove_timer(self, timer: FollowsClock) -> None:
+    def remove_timer(self, timer: ClockFollower) -> None:
         """Unregister a timer."""
         self._timers.pop(timer, None)
 

@@ -34,10 +34,10 @@ def fine_alarms(loop: AbstractEventLoop) -> FineAlarms | None:
     This function must be called in the loop's thread.
     """
     try:
-        return _of_loops[id(loop)]  # A weak dictionary is slower, and timers call this with each tick.
+        return _alarms_by_loop[id(loop)]  # A weak dictionary is slower, and timers call this with each tick.
     except KeyError:
-        found = _of_loops[id(loop)] = _made(loop)
-        weakref.finalize(loop, _of_loops.pop, id(loop), None)
+        found = _alarms_by_loop[id(loop)] = _made(loop)
+        weakref.finalize(loop, _alarms_by_loop.pop, id(loop), None)
         return found
 
 
@@ -143,5 +143,5 @@ class FineAlarms:
         self._set_timer()
 
 
-_of_loops: dict[int, FineAlarms | None] = {}
+_alarms_by_loop: dict[int, FineAlarms | None] = {}
 """By the identity of the loop; the entry is removed with the loop."""

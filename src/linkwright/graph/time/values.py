@@ -53,7 +53,11 @@ class Duration:
         return hash(self.nanoseconds)
 
     def __eq__(self, other: object) -> bool:
-        return self.nanoseconds == other.nanoseconds if isinstance(other, Duration) else _differs("duration", other)
+        return (
+            self.nanoseconds == other.nanoseconds
+            if isinstance(other, Duration)
+            else _compare_other_type("duration", other)
+        )
 
     def __lt__(self, other: object) -> bool:
         return self.nanoseconds < other.nanoseconds if isinstance(other, Duration) else NotImplemented
@@ -183,19 +187,23 @@ class Time:
             raise ValueError("Subtraction leads to negative time.") from error
 
     def __eq__(self, other: object) -> bool:
-        return self.nanoseconds == other._of_same(self) if isinstance(other, Time) else _differs("time", other)
+        return (
+            self.nanoseconds == other._comparable_nanoseconds(self)
+            if isinstance(other, Time)
+            else _compare_other_type("time", other)
+        )
 
     def __lt__(self, other: object) -> bool:
-        return self.nanoseconds < other._of_same(self) if isinstance(other, Time) else NotImplemented
+        return self.nanoseconds < other._comparable_nanoseconds(self) if isinstance(other, Time) else NotImplemented
 
     def __le__(self, other: object) -> bool:
-        return self.nanoseconds <= other._of_same(self) if isinstance(other, Time) else NotImplemented
+        return self.nanoseconds <= other._comparable_nanoseconds(self) if isinstance(other, Time) else NotImplemented
 
     def __gt__(self, other: object) -> bool:
-        return self.nanoseconds > other._of_same(self) if isinstance(other, Time) else NotImplemented
+        return self.nanoseconds > other._comparable_nanoseconds(self) if isinstance(other, Time) else NotImplemented
 
     def __ge__(self, other: object) -> bool:
-        return self.nanoseconds >= other._of_same(self) if isinstance(other, Time) else NotImplemented
+        return self.nanoseconds >= other._comparable_nanoseconds(self) if isinstance(other, Time) else NotImplemented
 
     def to_msg(self) -> messages.Time:
         """Convert the point in time to a builtin_interfaces/msg/Time."""
@@ -225,13 +233,13 @@ class Time:
             raise TypeError("Must pass a builtin_interfaces.msg.Time object")
         return cls(nanoseconds=msg.sec * NANOSECONDS_PER_SECOND + msg.nanosec, clock_type=clock_type)
 
-    def _of_same(self, other: Time) -> int:
+    def _comparable_nanoseconds(self, other: Time) -> int:
         if self.clock_type != other.clock_type:
             raise TypeError("Can't compare times with different clock types")
         return self.nanoseconds
 
 
-def _differs(kind: str, other: object) -> bool:
+def _compare_other_type(kind: str, other: object) -> bool:
     """Return NotImplemented for a comparison with an object of another type; raise before Iron.
 
     The error reveals mistakes such as ``duration == 5``.

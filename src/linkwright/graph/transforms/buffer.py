@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from linkwright.diagnostics import phrase
 from linkwright.geometry.arrays import IDENTITY, compose, invert
-from linkwright.graph.transforms.errors import bad_frame_name, loop, not_connected, unknown_frame
+from linkwright.graph.transforms.errors import frame_name_error, loop, not_connected_error, unknown_frame_error
 from linkwright.messages import TFMessage, TransformBatch
 
 Rows = NDArray[np.intp]
@@ -127,7 +127,7 @@ class TransformBuffer:
         self._plans: dict[tuple[tuple[str, ...], tuple[str, ...]], _Plan] = {}
         self._revision = 0
         self._in_roots: Poses | None = None
-        self._structure_changed()
+        self._rebuild_tree()
 
     def update(self, message: TFMessage, *, static: bool, now_ns: int) -> None:
         """Store the transforms of a message.
@@ -144,7 +144,7 @@ class TransformBuffer:
         plan = self._plan_for(batch)
         poses = batch.poses
         taken, rows, parents = plan.taken, plan.rows, plan.parents
-        usable = _usable(poses)
+        usable = _usable_mask(poses)
         if not usable.all():
             self._report_unusable(batch, np.flatnonzero(~usable))
             keep = usable[taken]
@@ -154,7 +154,7 @@ class TransformBuffer:
         if plan.revision != self._revision:
             if not np.array_equal(self._parents[rows], parents):
                 self._parents[rows] = parents
-                self._structure_changed()
+                self._rebuild_tree()
             if usable.all():
                 plan.revision = self._revision
         self._local[rows] = poses.take(taken, axis=0)
@@ -192,7 +192,7 @@ class TransformBuffer:
             if roots[row] < 0:
                 raise loop(phrase(" Frame '{frame}' is on it or below it.", frame=frame))
         if roots[target_row] != roots[source_row]:
-            raise not_connected(target, source)
+            raise not_connected_error(target, source)
         poses = self._poses_in_roots()
         return compose(invert(poses[target_row]), poses[source_row])
 
@@ -221,14 +221,14 @@ class TransformBuffer:
         self._local = self._local[kept]
         self._received_ns, self._static = self._received_ns[kept], self._static[kept]
         self._plans.clear()
-        self._structure_changed()
+        self._rebuild_tree()
 
     def clear(self) -> None:
         """Remove all transforms except the static ones, for example when time restarts."""
         moving = (self._parents >= 0) & ~self._static
         self.remove([name for name, row in self._rows.items() if moving[row]])
 
-    def _structure_changed(self) -> None:
+    def _rebuild_tree(self) -> None:
         self._revision += 1
         self._names = tuple(self._rows)
         self._parent_tuple = tuple(self._parents.tolist())
@@ -237,12 +237,12 @@ class TransformBuffer:
 
     def _row(self, argument: str, frame: str) -> int:
         argument = f"lookupTransform argument {argument}"
-        problem = bad_frame_name(argument, frame)
+        problem = frame_name_error(argument, frame)
         if problem is not None:
             raise problem
         row = self._rows.get(frame)
         if row is None:
-            raise unknown_frame(argument, frame, self._names)
+            raise unknown_frame_error(argument, frame, self._names)
         return row
 
     def _poses_in_roots(self) -> Poses:
@@ -273,7 +273,7 @@ class TransformBuffer:
         taken, rows, parents = [], [], []
         for number, (parent, child) in enumerate(zip(batch.parents, batch.children, strict=True)):
             parent, child = parent.removeprefix("/"), child.removeprefix("/")
-            if self._names_are_usable(parent, child):
+            if self._has_usable_names(parent, child):
                 taken.append(number)
                 parents.append(self._rows.setdefault(parent, len(self._rows)))
                 rows.append(self._rows.setdefault(child, len(self._rows)))
@@ -283,10 +283,10 @@ class TransformBuffer:
             self._local = np.vstack([self._local, np.tile(IDENTITY, (new, 1))])
             self._received_ns = np.append(self._received_ns, np.zeros(new, dtype=np.int64))
             self._static = np.append(self._static, np.zeros(new, dtype=np.bool_))
-            self._structure_changed()
+            self._rebuild_tree()
         return _Plan(_as_rows(taken), _as_rows(rows), _as_rows(parents))
 
-    def _names_are_usable(self, parent: str, child: str) -> bool:
+    def _has_usable_names(self, parent: str, child: str) -> bool:
         if not child:
             self._report("TF_NO_CHILD_FRAME_ID: Ignoring transform because child_frame_id not set")
         elif not parent:
@@ -324,7 +324,7 @@ def _as_rows(numbers: list[int]) -> Rows:
     return np.array(numbers, dtype=np.intp)
 
 
-def _usable(poses: Poses) -> NDArray[np.bool_]:
+def _usable_mask(poses: Poses) -> NDArray[np.bool_]:
     rotations = poses[:, 3:]
     squared_lengths = np.einsum("ni,ni->n", rotations, rotations)
     usable: NDArray[np.bool_] = np.abs(squared_lengths - 1.0) < _QUATERNION_TOLERANCE

@@ -23,9 +23,9 @@ from linkwright.graph.transforms.errors import (
     ConnectivityException,
     ExtrapolationException,
     LookupException,
-    bad_frame_name,
-    bad_frame_reason,
-    unknown_frame,
+    frame_name_error,
+    frame_name_problem,
+    unknown_frame_error,
 )
 from linkwright.graph.transforms.report import FrameFacts, frames_as_dot, frames_as_text, frames_as_yaml
 from linkwright.graph.transforms.velocity import velocity
@@ -96,7 +96,7 @@ class BufferCore:
                 self._set_message(transform, authority, static=static)
             return
         parents, children, stamps, poses = columns
-        if not _all_usable(poses):
+        if not _are_usable(poses):
             for parent, child, stamp_ns, pose in zip(parents, children, stamps, poses.tolist(), strict=True):
                 self._set(parent, child, stamp_ns, tuple(pose), authority, static=static)
             return
@@ -168,7 +168,7 @@ class BufferCore:
                 objection = self._objection(f"canTransform argument {argument}_frame", frame)
                 if objection:
                     return False, objection
-            return self._can(target_frame, source_frame, nanoseconds_of(time))
+            return self._can_transform(target_frame, source_frame, nanoseconds_of(time))
 
     def can_transform_full_core(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
@@ -180,8 +180,10 @@ class BufferCore:
                 objection = self._objection(f"canTransform argument {argument}_frame", frame)
                 if objection:
                     return False, objection
-            verdict = self._can(target_frame, fixed_frame, nanoseconds_of(target_time))
-            return self._can(fixed_frame, source_frame, nanoseconds_of(source_time)) if verdict[0] else verdict
+            verdict = self._can_transform(target_frame, fixed_frame, nanoseconds_of(target_time))
+            return (
+                self._can_transform(fixed_frame, source_frame, nanoseconds_of(source_time)) if verdict[0] else verdict
+            )
 
     def get_latest_common_time(self, target_frame: str, source_frame: str) -> Time:
         """Return the latest time for which all moving frames between two frames have transforms.
@@ -364,21 +366,21 @@ class BufferCore:
         return number
 
     def _number(self, argument: str, frame: str) -> int:
-        problem = bad_frame_name(argument, frame)
+        problem = frame_name_error(argument, frame)
         if problem is not None:
             raise problem
         number = self._numbers.get(frame)
         if number is None:
-            raise unknown_frame(argument, frame, self._numbers)
+            raise unknown_frame_error(argument, frame, self._numbers)
         return number
 
     def _objection(self, argument: str, frame: str) -> str | None:
-        reason: str | None = bad_frame_reason(frame)
+        reason: str | None = frame_name_problem(frame)
         if reason is None and frame not in self._numbers:
             reason = "frame does not exist"
         return None if reason is None else f'Invalid frame ID "{frame}" passed to {argument} - {reason}'
 
-    def _can(self, target: str, source: str, time_ns: int) -> tuple[bool, str]:
+    def _can_transform(self, target: str, source: str, time_ns: int) -> tuple[bool, str]:
         target_number, source_number = self._numbers.get(target, 0), self._numbers.get(source, 0)
         if not target_number or not source_number:
             return False, _NOT_DEFINED
@@ -420,7 +422,7 @@ class BufferCore:
         return facts
 
 
-def _all_usable(poses: NDArray[np.float64]) -> bool:
+def _are_usable(poses: NDArray[np.float64]) -> bool:
     """Return whether tf2 accepts all of these poses: no NaN, and quaternions of unit length."""
     rotations = poses[:, 3:]
     squared_lengths = np.einsum("ni,ni->n", rotations, rotations)

@@ -62,20 +62,20 @@ def loop(which: str) -> LookupException:
     )
 
 
-def unknown_frame(argument: str, frame: str, known: Iterable[str]) -> LookupException:
+def unknown_frame_error(argument: str, frame: str, known: Iterable[str]) -> LookupException:
     """Return the error for a frame that does not exist."""
     text = phrase('"{frame}" passed to {argument} does not exist. ', frame=frame, argument=argument)
     return LookupException(text, hint=did_you_mean(frame, known))
 
 
-def bad_frame_name(argument: str, frame: str) -> InvalidArgumentException | None:
+def frame_name_error(argument: str, frame: str) -> InvalidArgumentException | None:
     """Return the error for a frame name that is not valid; None if the name is valid.
 
     Args:
         argument: the name of the argument, for the message.
         frame: the frame name.
     """
-    reason = bad_frame_reason(frame)
+    reason = frame_name_problem(frame)
     if reason is None:
         return None
     return InvalidArgumentException(
@@ -85,7 +85,7 @@ def bad_frame_name(argument: str, frame: str) -> InvalidArgumentException | None
     )
 
 
-def bad_frame_reason(frame: str) -> Phrase | None:
+def frame_name_problem(frame: str) -> Phrase | None:
     """Return the reason why a frame name is not valid; None if the name is valid."""
     if not frame:
         return phrase("in tf2 frame_ids cannot be empty")
@@ -94,7 +94,7 @@ def bad_frame_reason(frame: str) -> Phrase | None:
     return None
 
 
-def not_connected(target: str, source: str) -> ConnectivityException:
+def not_connected_error(target: str, source: str) -> ConnectivityException:
     """Return the error for frames in different trees."""
     return ConnectivityException(
         phrase(

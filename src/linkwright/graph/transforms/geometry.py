@@ -26,7 +26,7 @@ def transform_pose_of(transform: Any) -> Transform:
 def do_transform_point(point: Any, transform: Any) -> Any:
     """Return a PointStamped in the target frame."""
     result = _new("PointStamped", transform)
-    _set_vector(result.point, _applied(transform, (point.point.x, point.point.y, point.point.z)))
+    _set_vector(result.point, _apply(transform, (point.point.x, point.point.y, point.point.z)))
     return result
 
 
@@ -87,7 +87,7 @@ def do_transform_polygon_stamped(polygon: Any, transform: Any) -> Any:
     points = []
     for corner in polygon.polygon.points:
         point = point_class()
-        _set_vector(point, _applied(transform, (corner.x, corner.y, corner.z)))
+        _set_vector(point, _apply(transform, (corner.x, corner.y, corner.z)))
         points.append(point)
     result.polygon.points = points
     return result
@@ -119,7 +119,7 @@ def _new(name: str, transform: Any) -> Any:
     return result
 
 
-def _applied(transform: Any, vector: Vector3) -> Vector3:
+def _apply(transform: Any, vector: Vector3) -> Vector3:
     pose = transform_pose_of(transform)
     x, y, z = rotate(pose[3:], vector)
     return pose[0] + x, pose[1] + y, pose[2] + z

@@ -12,7 +12,7 @@ from typing import Any
 from linkwright.diagnostics import phrase
 from linkwright.geometry.single import IDENTITY, Transform, compose, invert
 from linkwright.graph.transforms.cache import FrameCache, NoDataError
-from linkwright.graph.transforms.errors import ExtrapolationException, LookupException, loop, not_connected
+from linkwright.graph.transforms.errors import ExtrapolationException, LookupException, loop, not_connected_error
 
 MAX_DEPTH = 1000
 """How many frames a way may have before it counts as a loop (tf2 ``MAX_GRAPH_DEPTH``)."""
@@ -119,7 +119,7 @@ class Walker:
                 return _earliest(times + [stamp for stamp, _ in seen[: parents[parent] + 1]])
             if parent == source:
                 return _earliest(times)
-        raise not_connected(self._names[target], self._names[source])
+        raise not_connected_error(self._names[target], self._names[source])
 
     def _latest_upwards(self, frame: int) -> Any:
         for _ in range(MAX_DEPTH + 1):
@@ -173,7 +173,7 @@ class Walker:
             try:
                 parent, step = cache.at(way.time_ns) if poses else (cache.parent_at(way.time_ns), IDENTITY)
             except NoDataError as error:
-                raise self._extrapolation(str(error), source, target) from None
+                raise self._extrapolation_error(str(error), source, target) from None
             if depth > MAX_DEPTH:
                 raise self._loop()
             if poses:
@@ -183,10 +183,10 @@ class Walker:
         way.target_pose = pose
         if frame != way.top:
             if trouble is not None:
-                raise self._extrapolation(trouble, source, target)
-            raise not_connected(self._names[target], self._names[source])
+                raise self._extrapolation_error(trouble, source, target)
+            raise not_connected_error(self._names[target], self._names[source])
 
-    def _extrapolation(self, trouble: str, source: int, target: int) -> ExtrapolationException:
+    def _extrapolation_error(self, trouble: str, source: int, target: int) -> ExtrapolationException:
         return ExtrapolationException(
             phrase(
                 "{trouble}, when looking up transform from frame [{names}] to frame [{other_names}]",

@@ -28,7 +28,7 @@ class Guardian:
         self._folder: Path | None = None
 
     def start_and_mark(self, environment: dict[str, str]) -> dict[str, str]:
-        """Start the guardian if needed, and return the environment with a mark that identifies the launch.
+        """Start the guardian if needed, and return the environment with the mark of the launch.
 
         The guardian finds the processes of the launch by this mark.
         """

@@ -77,8 +77,8 @@ class Omissions:
         return (*others, last.with_changes(notes=(*last.notes, note)))
 
 
-def note_that_nothing_is_left(error: LinkwrightError) -> None:
-    """Add a note that no part of the launch can be skipped to an error in reading the launch file.
+def add_no_skip_note(error: LinkwrightError) -> None:
+    """Add a note to an error that no part of the launch can be skipped.
 
     The note is added only if the error is about missing software and has a location.
     """

@@ -78,7 +78,7 @@ class ProcessTable:
         return sorted(process.name for process in self._running)
 
     def seconds_to_end(self) -> float:
-        """Return the maximum time in seconds that running processes may take to end after `stop_all`."""
+        """Return the maximum time in seconds that processes may take to end after `stop_all`."""
         plans = [process.plan for process in tuple(self._running)]
         return max((plan.seconds_to_sigterm + plan.seconds_to_sigkill for plan in plans), default=0.0)
 

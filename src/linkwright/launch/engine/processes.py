@@ -27,11 +27,11 @@ if TYPE_CHECKING:
 
 _HAS_GROUPS = hasattr(os, "killpg")
 _KILL = getattr(signal, "SIGKILL", signal.SIGTERM)
-_LAST_WORDS_SECONDS = 0.2
+_DRAIN_SECONDS = 0.2
 """Seconds to read on after a process has ended: its children may hold the streams open forever."""
 _LONGEST_LINE = 100_000
 """The maximum number of characters of an incomplete line."""
-_HURRIED_SECONDS = {"SIGTERM": 0.0, "SIGKILL": 0.5}
+_ESCALATION_SECONDS = {"SIGTERM": 0.0, "SIGKILL": 0.5}
 """Seconds to wait before each signal when the user does not want to wait."""
 _TERMINALS = frozenset({"xterm", "gnome-terminal", "konsole", "terminator", "x-terminal-emulator", "xfce4-terminal"})
 """Terminal programs that launch files use as ``prefix``, so that a process has a keyboard."""
@@ -65,7 +65,7 @@ class RunningProcess:
         self._wants_output = wants_output
         self._guardian = guardian
         self._transport: asyncio.SubprocessTransport | None = None
-        self._lines = {1: _Lines(), 2: _Lines()}
+        self._lines = {1: _LineSplitter(), 2: _LineSplitter()}
         self._open_streams = {1, 2}
         self._streams_closed = asyncio.Event()
         self._ended = asyncio.Event()
@@ -92,7 +92,7 @@ class RunningProcess:
         try:
             await self._ended.wait()
             with contextlib.suppress(asyncio.TimeoutError):
-                await asyncio.wait_for(self._streams_closed.wait(), _LAST_WORDS_SECONDS)
+                await asyncio.wait_for(self._streams_closed.wait(), _DRAIN_SECONDS)
         finally:
             # Even after an exception, no member of the process group may outlive the launcher.
             if not self._ended.is_set():
@@ -122,7 +122,7 @@ class RunningProcess:
             (self.plan.seconds_to_sigkill, "SIGTERM", "SIGKILL"),
         ):
             began = time.monotonic()
-            if await self._ends_within(seconds, _HURRIED_SECONDS[following]):
+            if await self._ends_within(seconds, _ESCALATION_SECONDS[following]):
                 return
             waited = round(time.monotonic() - began, 1) if self._hurried else seconds
             self._log.error_line(
@@ -178,7 +178,7 @@ class RunningProcess:
         loop = asyncio.get_running_loop()
         environment = self._guardian.start_and_mark(process_environment(plan.environment))
         options: dict[str, Any] = {"cwd": plan.folder, "env": environment, "start_new_session": True}
-        terminals = _pseudo_terminals() if plan.emulate_tty else []
+        terminals = _open_pseudo_terminals() if plan.emulate_tty else []
         if terminals:
             options["stdout"], options["stderr"] = (inner for _, inner in terminals)
         try:
@@ -270,7 +270,7 @@ class RunningProcess:
         for line in self._lines[number].feed(chunk):
             self._show(number, line)
 
-    def stream_closed(self, number: int) -> None:
+    def handle_stream_end(self, number: int) -> None:
         """Record that stdout (1) or stderr (2) is closed."""
         self._open_streams.discard(number)
         if not self._open_streams:
@@ -299,7 +299,7 @@ class RunningProcess:
         self._log.error_line(self.name, f"process has died [pid {pid}, exit code {returncode}, cmd '{command}'].")
 
 
-class _Lines:
+class _LineSplitter:
     """Splits the output of a process into lines.
 
     An incomplete line that exceeds the maximum length is returned in parts.
@@ -342,7 +342,7 @@ class _Streams(asyncio.SubprocessProtocol):
         self._process.handle_output(fd, data)
 
     def pipe_connection_lost(self, fd: int, exc: Exception | None) -> None:
-        self._process.stream_closed(fd)
+        self._process.handle_stream_end(fd)
 
     def process_exited(self) -> None:
         self._process.ended()
@@ -359,10 +359,10 @@ class _Terminal(asyncio.Protocol):
         self._process.handle_output(self._number, data)
 
     def connection_lost(self, exc: Exception | None) -> None:
-        self._process.stream_closed(self._number)
+        self._process.handle_stream_end(self._number)
 
 
-def _pseudo_terminals() -> list[tuple[int, int]]:
+def _open_pseudo_terminals() -> list[tuple[int, int]]:
     """Open pseudo-terminals for stdout and stderr, if the system has them.
 
     Returns:

@@ -176,12 +176,12 @@ def _end_tasks(loop: asyncio.AbstractEventLoop) -> None:
 
 
 class ProcessLaunchService(LaunchService):
-    """Runs every node as a process, so that tests can observe the output and exit status of each node."""
+    """Runs every node as a process, so that tests can observe its output and exit status."""
 
     _isolates_nodes = True
 
 
 def _starting_folders() -> list[Path]:
-    """Return the folders where the package search starts: the program's folder and the current folder."""
+    """Return the start folders of the package search: the program's folder and the current one."""
     program = Path(sys.argv[0]).absolute().parent if sys.argv and sys.argv[0] else Path.cwd()
     return [program, Path(os.getcwd())]  # noqa: PTH109 - the folder may not exist any more

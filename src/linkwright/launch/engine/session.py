@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from linkwright.launch.model.running_launch import Schedule
 
 
-_SILENT_SECONDS = 1.0
+_REPORT_DELAY_SECONDS = 1.0
 """Seconds after Ctrl-C until the log names the processes that delay the end."""
 
 
@@ -268,7 +268,7 @@ class LaunchSession:
             return
         self.emit(events.Shutdown(reason=reason, due_to_sigint=True))
         if self.loop is not None:
-            self.loop.call_later(_SILENT_SECONDS, self._log_awaited)
+            self.loop.call_later(_REPORT_DELAY_SECONDS, self._log_running_processes)
 
     def seconds_to_end(self) -> float:
         """Return the maximum time in seconds that the processes may take to end."""
@@ -281,7 +281,7 @@ class LaunchSession:
         """
         self.processes.kill_all()
 
-    def _log_awaited(self) -> None:
+    def _log_running_processes(self) -> None:
         names = self.processes.names
         if names:
             self.log.info_line("launch", f"waiting for {', '.join(names)} to end; Ctrl-C again does not wait")
@@ -356,7 +356,7 @@ class LaunchSession:
         context.push_locals()
         try:
             entities: list[LaunchDescriptionEntity] = []
-            for handler in context.handlers_of(event):
+            for handler in context.matching_handlers(event):
                 entities += as_entities(handler.handle(event, context))
             if isinstance(event, events.ProcessExited):
                 context.extend_locals({"event": event})
@@ -376,7 +376,7 @@ class LaunchSession:
         """Handle an event that ends the launch, or that stops or signals processes."""
         if isinstance(event, events.Shutdown):
             if not self.ending:
-                self._begin_end(event)
+                self._begin_shutdown(event)
         elif isinstance(event, events.ShutdownProcess):
             self.processes.stop_matching(event.process_matcher)
             self.host.stop_matching(event.process_matcher)
@@ -384,7 +384,7 @@ class LaunchSession:
             self.processes.signal_matching(event.process_matcher, event.signal)
             self.host.stop_matching(event.process_matcher)
 
-    def _begin_end(self, event: events.Shutdown) -> None:
+    def _begin_shutdown(self, event: events.Shutdown) -> None:
         self.ending = True
         for cancel in tuple(self._waiting.values()):
             if cancel is not None:

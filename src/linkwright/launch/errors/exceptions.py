@@ -61,12 +61,12 @@ def as_ros_error(ros_error: Exception | None, *diagnostics: Diagnostic) -> Linkw
     """
     if ros_error is None:
         return LinkwrightError(*diagnostics)
-    error = _class_for(_base_of(type(ros_error)))(*diagnostics)
+    error = _class_for(_constructible_base(type(ros_error)))(*diagnostics)
     vars(error)["ros_text"] = str(ros_error)
     return error
 
 
-def _base_of(kind: type[Exception]) -> type[Exception]:
+def _constructible_base(kind: type[Exception]) -> type[Exception]:
     """Return an exception class or its nearest base whose constructor accepts a single string."""
     bases: list[type[Any]] = [candidate for candidate in kind.__mro__ if not issubclass(candidate, LinkwrightError)]
     for base in bases:

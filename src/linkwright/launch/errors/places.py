@@ -20,7 +20,7 @@ from linkwright.packages.programs.code_files import is_ours
 
 T = TypeVar("T", bound="Placed")
 
-_STARTERS = (str(Path(__file__).parents[2] / "cli") + os.sep, str(Path(asyncio.__file__).parent) + os.sep)
+_STARTER_FOLDERS = (str(Path(__file__).parents[2] / "cli") + os.sep, str(Path(asyncio.__file__).parent) + os.sep)
 """Folders of the programs that may have started our code: the command line, the event loop."""
 
 
@@ -35,17 +35,17 @@ class Place(ABC):
 
     @staticmethod
     def of_caller() -> Place | None:
-        """Return the place of the markup being read, or else of the nearest stack frame of a user's program.
+        """Return the place of the markup being read, or else of the nearest frame of user code.
 
         Returns:
             The place; None if Linkwright's command line or the event loop started the calling code.
         """
-        if _being_read:
-            return _being_read[-1]
+        if _markup_places:
+            return _markup_places[-1]
         frame: FrameType | None = sys._getframe(1)
         while frame is not None:
             filename = frame.f_code.co_filename
-            if filename.startswith(_STARTERS):
+            if filename.startswith(_STARTER_FOLDERS):
                 return None
             if not is_ours(filename):
                 break
@@ -122,17 +122,17 @@ class Placed:
         return made
 
 
-_being_read: list[Place | None] = []
+_markup_places: list[Place | None] = []
 
 
 @contextmanager
 def reading_markup_at(place: Place | None) -> Iterator[None]:
-    """Set the place that is recorded for objects created in this context, None for an unknown place."""
-    _being_read.append(place)
+    """Set the place that is recorded for objects created in this context; None if unknown."""
+    _markup_places.append(place)
     try:
         yield
     finally:
-        _being_read.pop()
+        _markup_places.pop()
 
 
 @contextmanager
@@ -141,12 +141,12 @@ def outside_markup() -> Iterator[None]:
 
     Outside this context, the objects get the place in the markup that is being read.
     """
-    kept = _being_read[:]
-    _being_read.clear()
+    kept = _markup_places[:]
+    _markup_places.clear()
     try:
         yield
     finally:
-        _being_read[:] = kept
+        _markup_places[:] = kept
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,7 +167,7 @@ class CodePlace(Place):
         return read_source(self.file)
 
     def span(self, source: SourceText | None = None) -> Span:
-        """Return the expression at the place, or its entire line if Python records no columns (before 3.11)."""
+        """Return the expression at the place, or its entire line before Python 3.11."""
         positions = getattr(self.code, "co_positions", None)
         if positions is not None:
             exact = next(islice(positions(), self.instruction // 2, None), None)

@@ -13,7 +13,7 @@ _MARK = "is_unavailable"
 
 
 def mark_unavailable(error: LinkwrightError) -> LinkwrightError:
-    """Mark an error as caused by a package or program that is not installed, and return the error.
+    """Mark an error as caused by missing third-party software, and return the error.
 
     Errors about misspelt names are not marked.
     """
@@ -26,8 +26,8 @@ def is_unavailable(error: LinkwrightError) -> bool:
     return bool(vars(error).get(_MARK))
 
 
-def is_foreign(error: LinkwrightError) -> bool:
-    """Return whether an error from a launch file is about a missing third-party package or module."""
+def is_missing_third_party(error: LinkwrightError) -> bool:
+    """Return whether an error is about a missing third-party package or module."""
     if isinstance(error, PackageNotFoundError):
         return not error.is_slip
     return isinstance(error, ModuleNotFoundError) or is_unavailable(error)

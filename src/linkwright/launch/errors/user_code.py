@@ -128,12 +128,12 @@ def _public_names(owner: object) -> list[str]:
 
 
 def _import_hint(error: ImportError) -> Phrase | None:
-    from linkwright.packages.programs.missing_modules import missing_name, provider_hint, where_it_is
+    from linkwright.packages.programs.missing_modules import missing_name, other_module_hint, provider_hint
 
     found = missing_name(error)
     if found:
         name, module = found
-        return where_it_is(error) or did_you_mean(name, _public_names(sys.modules.get(module)))
+        return other_module_hint(error) or did_you_mean(name, _public_names(sys.modules.get(module)))
     missing = error.name or ""
     parent, _, name = missing.rpartition(".")
     if parent in sys.modules:

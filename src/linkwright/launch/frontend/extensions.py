@@ -19,7 +19,13 @@ from linkwright.loading.extensions import extensions
 from linkwright.packages import PackageFinder, current_finder, install_prefix, is_installed
 from linkwright.packages.programs.python_modules import find_module
 from linkwright.packages.programs.workspace_environment import python_folders
-from linkwright.packages.readers.entry_points import in_metadata, in_pyproject, in_setup_cfg, in_setup_py, text_of
+from linkwright.packages.readers.entry_points import (
+    read_metadata_group,
+    read_pyproject_group,
+    read_setup_cfg_group,
+    read_setup_py_group,
+    text_of,
+)
 
 ACTIONS = "launch.frontend.launch_extension"
 """The group of modules that expose actions and substitutions when they are imported."""
@@ -88,9 +94,13 @@ def _modules(package: str, share: Path) -> Iterator[str]:
     if is_installed(share):
         for folder in python_folders(install_prefix(share), package):
             for path in folder.glob("*-info/entry_points.txt"):
-                yield from _modules_in_lines(in_metadata(text_of(path), ACTIONS))
+                yield from _modules_in_lines(read_metadata_group(text_of(path), ACTIONS))
         return
-    for name, read in (("setup.py", in_setup_py), ("setup.cfg", in_setup_cfg), ("pyproject.toml", in_pyproject)):
+    for name, read in (
+        ("setup.py", read_setup_py_group),
+        ("setup.cfg", read_setup_cfg_group),
+        ("pyproject.toml", read_pyproject_group),
+    ):
         text = text_of(share / name)
         if ACTIONS in text:
             yield from _modules_in_lines(read(text, ACTIONS))

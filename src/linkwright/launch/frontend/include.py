@@ -16,7 +16,7 @@ from linkwright.diagnostics import (
     quoted_names,
 )
 from linkwright.launch.errors.places import MarkupPlace, error_at
-from linkwright.launch.errors.unavailable import is_foreign, mark_unavailable
+from linkwright.launch.errors.unavailable import is_missing_third_party, mark_unavailable
 from linkwright.launch.frontend.sources import AnyLaunchDescriptionSource, LaunchDescriptionSource
 from linkwright.launch.model.action import Action
 from linkwright.launch.model.actions.configurations import (
@@ -138,7 +138,7 @@ class IncludeLaunchDescription(Action):
         try:
             description = self._source.get_launch_description(context)
         except LinkwrightError as error:
-            if is_foreign(error) or self._is_of_substitute():
+            if is_missing_third_party(error) or self._is_missing_in_substitute():
                 mark_unavailable(error)
             raise
         given = [perform_substitutions(context, name) for name, _ in self._arguments]
@@ -172,8 +172,8 @@ class IncludeLaunchDescription(Action):
             )
         return error
 
-    def _is_of_substitute(self) -> bool:
-        """Return whether the included file does not exist and belongs to our substitute for a ROS package."""
+    def _is_missing_in_substitute(self) -> bool:
+        """Return whether the included file is missing in Linkwright's substitute for a ROS package."""
         path = self._source.location_path
         return path is not None and not path.exists() and any(is_substitute(folder) for folder in path.parents)
 

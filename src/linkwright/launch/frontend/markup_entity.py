@@ -43,7 +43,7 @@ class MarkupEntity(Entity):
         """The location of the entity."""
         return self._place
 
-    def _check_all_asked(self, present: Iterable[str], what: str, ros_text: str) -> None:
+    def _check_all_read(self, present: Iterable[str], what: str, ros_text: str) -> None:
         """Raise an error if parts of the entity were not read.
 
         Args:
@@ -81,18 +81,18 @@ class MarkupEntity(Entity):
         message = phrase("'{type_name}' needs an attribute '{name}'", type_name=self._type_name, name=name)
         raise error_at(self._place, "LAUNCH117", message, hint, ros_error=AttributeError(ros_error))
 
-    def _wrong_type(self, name: str, value: Any, data_type: Any, ros_error: str) -> NoReturn:
+    def _fail_wrong_type(self, name: str, value: Any, data_type: Any, ros_error: str) -> NoReturn:
         message = phrase(
             "attribute '{name}' of '{type_name}' is {value}, which is not {type_words}",
             name=name,
             type_name=self._type_name,
             value=repr(value),
-            type_words=type_words(data_type),
+            type_words=describe_type(data_type),
         )
         raise error_at(self._place_of_part(name), "LAUNCH118", message, ros_error=TypeError(ros_error))
 
 
-def type_words(data_type: Any) -> Phrase:
+def describe_type(data_type: Any) -> Phrase:
     """Return a type in words for messages, such as "an integer"."""
     words = {
         int: phrase("an integer"),

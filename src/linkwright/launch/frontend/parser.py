@@ -169,7 +169,7 @@ class Parser:
             InvalidFrontendLaunchFileError: LAUNCH107 to LAUNCH109 and XML codes, the errors in the file.
         """
         name, text = read_file(file)
-        chosen = cls.get_parsers_from_filename(name) or _by_suffix(name, cls._parsers())
+        chosen = cls.get_parsers_from_filename(name) or _parsers_by_suffix(name, cls._parsers())
         errors: list[Exception] = []
         for parser in chosen or cls._parsers().values():
             again = io.StringIO(text)
@@ -222,6 +222,6 @@ def _likely_diagnostics(name: str, text: str, errors: Sequence[Exception]) -> tu
     return (Diagnostic("LAUNCH107", message),)
 
 
-def _by_suffix(name: str, parsers: dict[str, type[Parser]]) -> list[type[Parser]]:
+def _parsers_by_suffix(name: str, parsers: dict[str, type[Parser]]) -> list[type[Parser]]:
     suffix = {".xml": "xml", ".launch": "xml", ".yaml": "yaml", ".yml": "yaml"}.get(os.path.splitext(name)[1])  # noqa: PTH122
     return [parsers[suffix]] if suffix in parsers else []

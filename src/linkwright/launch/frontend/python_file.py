@@ -37,8 +37,8 @@ def load_python_launch_file(path: Path) -> LaunchDescription:
 
     Raises:
         LinkwrightError: LAUNCH101, there is no such file; LAUNCH102, the file cannot be read; LAUNCH103, it has a
-            syntax error; LAUNCH104, it raised an exception; LAUNCH105, it does not define the function;
-            LAUNCH106, the function does not return a LaunchDescription.
+            syntax error; LAUNCH104, it raised an exception; LAUNCH105, it does not define the function; LAUNCH106, the
+            function does not return a LaunchDescription.
     """
     with outside_markup():
         source = read_launch_file(path)

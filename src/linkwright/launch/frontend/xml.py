@@ -45,8 +45,8 @@ class Entity(MarkupEntity):
             ValueError: LAUNCH116, an attribute or child element was not read.
         """
         tags = [element.tag for element in self._element.elements()]
-        self._check_all_asked(tags, "element", "Unexpected nested tag(s) found in")
-        self._check_all_asked(self._element.attributes, "attribute", "Unexpected attribute(s) found in")
+        self._check_all_read(tags, "element", "Unexpected nested tag(s) found in")
+        self._check_all_read(self._element.attributes, "attribute", "Unexpected attribute(s) found in")
 
     def get_attr(self, name: str, *, data_type: Any = str, optional: bool = False, can_be_str: bool = True) -> Any:
         """Return the value of an attribute, or the child elements with a tag.
@@ -77,7 +77,7 @@ class Entity(MarkupEntity):
                 f"Attribute '{name}' of Entity '{self.type_name}' expected to be of type '{data_type}'."
                 f"'{value}' can not be converted to one of those types"
             )
-            self._wrong_type(name, str(value), data_type, ros_error)
+            self._fail_wrong_type(name, str(value), data_type, ros_error)
 
     def _place_of_part(self, name: str) -> Place | None:
         element, source = self._element, self._element.source

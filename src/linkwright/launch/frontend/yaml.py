@@ -89,7 +89,7 @@ class Entity(MarkupEntity):
             ValueError: LAUNCH116, a key was not read.
         """
         if isinstance(self._element, dict):
-            self._check_all_asked(self._element, "key", "Unexpected key(s) found in")
+            self._check_all_read(self._element, "key", "Unexpected key(s) found in")
         elif isinstance(self._element, list) and not self._children_asked:
             text = f"Unexpected nested entity(ies) found in `{self.type_name}`: {self._element}"
             message = phrase("'{type_name}' does not accept a list of actions", type_name=self.type_name)
@@ -120,13 +120,13 @@ class Entity(MarkupEntity):
             )
             raise error_at(self._place_of_part(name), "LAUNCH118", message, ros_error=TypeError(text))
         if data_type is str and isinstance(value, (bool, int, float)):
-            return PlacedText(_scalar_text(value), self._place_of_part(name))
+            return PlacedText(_format_scalar(value), self._place_of_part(name))
         if not is_instance_of(value, data_type, can_be_str=can_be_str):
             text = (
                 f"Attribute '{name}' of Entity '{self.type_name}' expected to be of type '{data_type}', "
                 f"got '{type(value)}'"
             )
-            self._wrong_type(name, value, data_type, text)
+            self._fail_wrong_type(name, value, data_type, text)
         return value
 
     def _place_of_part(self, name: str) -> Place | None:
@@ -136,8 +136,8 @@ class Entity(MarkupEntity):
         return self.place
 
 
-def _scalar_text(value: bool | float) -> str:
-    """Return a YAML boolean or number as a string that conditions and parameters read as the same value."""
+def _format_scalar(value: bool | float) -> str:
+    """Return a YAML boolean or number as a string that parameters read as the same value."""
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
@@ -186,7 +186,7 @@ class _Loader(yaml.SafeLoader):
         self._open_anchors: list[str | None] = []
 
     def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
-        """Compose a node, and reject an alias inside the node of its anchor, which would recurse endlessly."""
+        """Compose a node, and reject an alias to an enclosing node, which would recurse endlessly."""
         event: Any = self.peek_event()  # type: ignore[no-untyped-call]  # of PyYAML
         anchor = getattr(event, "anchor", None)
         if isinstance(event, yaml.AliasEvent) and anchor in self._open_anchors:

@@ -43,7 +43,7 @@ class _ScreenHandler(StreamHandler):
         pass
 
 
-class _MainFile(Handler):
+class _MainFileHandler(Handler):
     """Writes lines to the main log file, which is opened when the first line is written."""
 
     def emit(self, record: logging.LogRecord) -> None:
@@ -77,7 +77,7 @@ class LaunchConfig:
         self.log_file_name = MAIN_LOG
         self.file_handlers: dict[str, logging.Handler] = {}
         self.screen_handler: logging.Handler | None = None
-        self.main_file = _MainFile()
+        self.main_file = _MainFileHandler()
         self.screen_formatter: logging.Formatter | None = None
         self.file_formatter: logging.Formatter | None = None
         self._log_handler_factory: Callable[..., logging.Handler] | None = None
@@ -125,7 +125,7 @@ class LaunchConfig:
 
     @property
     def log_handler_factory(self) -> Callable[..., logging.Handler]:
-        """The factory of file handlers, which is called with a path and the keyword argument ``encoding``."""
+        """The factory of file handlers, called with a path and the keyword argument ``encoding``."""
         return self._log_handler_factory or (FileHandler if os.name == "nt" else WatchedFileHandler)
 
     @log_handler_factory.setter
@@ -223,7 +223,7 @@ def get_logger(name: str | None = None) -> logging.Logger:
 
 
 def _is_handled_by_parent(logger: logging.Logger, handler: logging.Handler) -> bool:
-    """Return whether a logger above a logger in the hierarchy has a handler and receives the logger's lines."""
+    """Return whether a logger's lines reach a handler through one of its parent loggers."""
     above: logging.Logger | None = logger if logger.propagate else None
     while above is not None and above.parent is not None:
         above = above.parent

@@ -72,7 +72,7 @@ class Condition(Placed):
             raise error_at(self.place, "LAUNCH127", _words(error.text), ros_error=error) from error
 
 
-class _OnExpression(Condition):
+class _ExpressionCondition(Condition):
     """The base class of conditions that evaluate an expression."""
 
     def __init__(self, predicate_expression: Any, wanted: bool) -> None:
@@ -85,14 +85,14 @@ class _OnExpression(Condition):
         return f"{type(self).__name__}({describe(self._expression)})"
 
 
-class IfCondition(_OnExpression):
+class IfCondition(_ExpressionCondition):
     """A condition that holds if an expression is true."""
 
     def __init__(self, predicate_expression: SomeSubstitutionsType) -> None:
         super().__init__(predicate_expression, True)
 
 
-class UnlessCondition(_OnExpression):
+class UnlessCondition(_ExpressionCondition):
     """A condition that holds if an expression is false."""
 
     def __init__(self, predicate_expression: SomeSubstitutionsType) -> None:
@@ -133,7 +133,9 @@ def _equals(name: str, expected: SomeSubstitutionsType | None) -> Callable[[Laun
 
 
 def evaluate_condition_expression(context: LaunchContext, expression: Any) -> bool:
-    """Return the value of an expression: ``true`` or ``1``, ``false`` or ``0``, in upper or lower case.
+    """Evaluate an expression to a boolean.
+
+    The accepted texts are ``true``, ``1``, ``false`` and ``0``, in upper or lower case.
 
     Raises:
         InvalidConditionExpressionError: the expression evaluates to any other text.

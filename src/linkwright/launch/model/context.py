@@ -180,7 +180,7 @@ class LaunchContext:
         self._configurations_stack.append(dict(self.launch_configurations))
 
     def pop_launch_configurations(self) -> None:
-        """Close the innermost scope of launch configurations, and restore the configurations from before it.
+        """Close the innermost scope of launch configurations, and restore the earlier values.
 
         Raises:
             RuntimeError: no scope is open.
@@ -196,7 +196,7 @@ class LaunchContext:
         self._environment_stack.append(dict(self.environment))
 
     def pop_environment(self) -> None:
-        """Close the innermost scope of environment variables, and restore the variables from before it.
+        """Close the innermost scope of environment variables, and restore the earlier values.
 
         Raises:
             RuntimeError: no scope is open.
@@ -358,9 +358,9 @@ class LaunchContext:
 
     def would_handle_event(self, event: Event) -> bool:
         """Return whether any handler accepts the event."""
-        return any(True for _ in self.handlers_of(event))
+        return any(True for _ in self.matching_handlers(event))
 
-    def handlers_of(self, event: Event) -> Iterator[Handler]:
+    def matching_handlers(self, event: Event) -> Iterator[Handler]:
         """Return the handlers that accept an event, in the order in which they are called."""
         return (handler for handler in tuple(self._event_handlers) if handler.matches(event))
 

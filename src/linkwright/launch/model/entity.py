@@ -43,7 +43,10 @@ class LaunchDescriptionEntity(Placed):
         return ()
 
     def hides_entities(self) -> bool:
-        """Return whether some child entities are unknown before the launch, such as those of an included file."""
+        """Return whether some child entities are unknown before the launch.
+
+        For example, the path of an included file may contain substitutions.
+        """
         return False
 
     def explain_inside(self, error: LinkwrightError) -> LinkwrightError:
@@ -55,7 +58,10 @@ class LaunchDescriptionEntity(Placed):
         return error
 
     def get_asyncio_future(self) -> asyncio.Future[Any] | None:
-        """Return a future that is done when the entity has ended; None if the entity ends with its visit."""
+        """Return a future that is done when the entity has ended.
+
+        The result is None if the entity ends with its visit.
+        """
         return None
 
 

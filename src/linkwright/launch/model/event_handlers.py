@@ -98,7 +98,7 @@ class EventHandler(BaseEventHandler):
         return self._entities
 
 
-class _ReactingHandler(BaseEventHandler):
+class _ReactionHandler(BaseEventHandler):
     """Visits given entities, or the entities that a function of event and context returns.
 
     Args:
@@ -115,7 +115,7 @@ class _ReactingHandler(BaseEventHandler):
         self, *, matcher: Callable[[Any], bool], reaction: EntitiesOrCallable, name: str, handle_once: bool
     ) -> None:
         super().__init__(matcher=matcher, handle_once=handle_once)
-        self._function, self._entities = _reaction(reaction, name)
+        self._function, self._entities = _parse_reaction(reaction, name)
 
     @property
     def entities(self) -> list[LaunchDescriptionEntity]:
@@ -133,7 +133,7 @@ class _ReactingHandler(BaseEventHandler):
         return self._entities if self._function is None else self._function(event, context)
 
 
-class OnActionEventBase(_ReactingHandler):
+class OnActionEventBase(_ReactionHandler):
     """A handler for events that come from an action.
 
     Args:
@@ -179,7 +179,7 @@ class OnActionEventBase(_ReactingHandler):
         return f"event == {self._event_name} and {self._action_name}(event.action)"
 
 
-def _reaction(given: Any, name: str) -> tuple[Callable[..., Any] | None, list[LaunchDescriptionEntity]]:
+def _parse_reaction(given: Any, name: str) -> tuple[Callable[..., Any] | None, list[LaunchDescriptionEntity]]:
     """Return the function of a reaction, or None, and the given entities.
 
     Raises:
@@ -211,7 +211,7 @@ class OnExecutionComplete(OnActionEventBase):
     ) -> None:
         self._given: list[LaunchDescriptionEntity] = []
         super().__init__(
-            action_matcher=self._is_of_another if target_action is None else target_action,
+            action_matcher=self._is_foreign_action if target_action is None else target_action,
             on_event=on_completion,
             target_event_cls=events.ExecutionComplete,
             target_action_cls=Action,
@@ -226,7 +226,7 @@ class OnExecutionComplete(OnActionEventBase):
         self._given += as_entities(following) if following is not None else ()
         return following
 
-    def _is_of_another(self, action: Action) -> bool:
+    def _is_foreign_action(self, action: Action) -> bool:
         return not any(action is launch_description_entity for launch_description_entity in self._given)
 
 
@@ -242,7 +242,7 @@ class OnIncludeLaunchDescription(BaseEventHandler):
         return event.launch_description
 
 
-class OnShutdown(_ReactingHandler):
+class OnShutdown(_ReactionHandler):
     """Reacts to the shutdown of the launch."""
 
     def __init__(self, *, on_shutdown: EntitiesOrCallable, handle_once: bool = False, **_: Any) -> None:

@@ -77,7 +77,7 @@ _loops: list[asyncio.AbstractEventLoop] = []
 def visit_all_entities_and_collect_futures(
     entity: LaunchDescriptionEntity, context: LaunchContext
 ) -> list[tuple[LaunchDescriptionEntity, asyncio.Future[Any]]]:
-    """Visit an entity and its descendants, and return the entities with a future and their futures.
+    """Visit an entity and its descendants, and return their futures.
 
     An entity has a future if it continues after its visit.
     """

@@ -70,7 +70,7 @@ class RunningLaunch(Protocol):
 
     @property
     def left_out(self) -> set[str]:
-        """The names, without namespaces, of the nodes that were skipped because their software is not available."""
+        """The names, without namespaces, of nodes that were skipped because of missing software."""
 
     @property
     def host(self) -> NodeHosting:

@@ -63,7 +63,7 @@ def normalize_to_list_of_substitutions(value: Any) -> list[Substitution]:
     if isinstance(value, (str, Path)):
         return [TextSubstitution(text=str(value))]
     if isinstance(value, Iterable) and not isinstance(value, bytes):
-        return [_single(item) for item in value]
+        return [_as_substitution(item) for item in value]
     raise TypeError(f"expected a text, a substitution or a list of them, got {value!r} of type {type(value).__name__}")
 
 
@@ -77,7 +77,7 @@ def describe(substitutions: Iterable[Substitution]) -> str:
     return " + ".join(substitution.describe() for substitution in substitutions)
 
 
-def _single(value: Any) -> Substitution:
+def _as_substitution(value: Any) -> Substitution:
     if isinstance(value, Substitution):
         return value
     if isinstance(value, (str, Path)):

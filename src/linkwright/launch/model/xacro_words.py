@@ -12,7 +12,7 @@ _OPTIONS_WITHOUT_EFFECT = frozenset({"--inorder", "-i", "-q"})
 _OPTIONS_WITH_A_VALUE = frozenset({"-v", "--verbosity"})
 
 
-def parse_xacro_words(words: Sequence[str], text: str, folder: Path) -> tuple[XacroCall, Phrase | None]:
+def parse_xacro_arguments(words: Sequence[str], text: str, folder: Path) -> tuple[XacroCall, Phrase | None]:
     """Parse the arguments of ``xacro``.
 
     Args:
@@ -38,7 +38,7 @@ def parse_xacro_words(words: Sequence[str], text: str, folder: Path) -> tuple[Xa
             next(waiting, None)
         elif word.startswith("-") and len(word) > 1:
             if word not in _OPTIONS_WITHOUT_EFFECT and not word.startswith(("-v", "--verbosity=")):
-                raise _misuse(
+                raise _usage_error(
                     phrase("option '{word}' of xacro is not supported in a launch file", word=word),
                     phrase("leave it out"),
                 )
@@ -48,7 +48,7 @@ def parse_xacro_words(words: Sequence[str], text: str, folder: Path) -> tuple[Xa
     if len(files) > 1:
         joined_path = text.split(":=", 1)[0].rsplit(None, 1)[0] if ":=" in text else text
         if not (folder / joined_path.strip()).is_file():
-            raise _misuse(
+            raise _usage_error(
                 phrase(
                     "xacro expects exactly one model file, but was given {count}: {files}",
                     count=len(files),
@@ -62,9 +62,9 @@ def parse_xacro_words(words: Sequence[str], text: str, folder: Path) -> tuple[Xa
             files=files[0],
         )
     if not files:
-        raise _misuse(phrase("the xacro command names no model file"), phrase("write Command(['xacro ', path])"))
+        raise _usage_error(phrase("the xacro command names no model file"), phrase("write Command(['xacro ', path])"))
     return XacroCall(folder / files[0], tuple(arguments.items())), remark
 
 
-def _misuse(message: Phrase, hint: Phrase) -> LinkwrightError:
+def _usage_error(message: Phrase, hint: Phrase) -> LinkwrightError:
     return LinkwrightError(Diagnostic("LAUNCH128", message, hint=hint))

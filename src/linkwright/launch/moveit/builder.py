@@ -187,7 +187,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
         return self
 
     def sensors_3d(self, file_path: _Path = None) -> MoveItConfigsBuilder:
-        """Read the 3D sensors whose data forms the occupancy map, if the package configures such sensors."""
+        """Read the 3D sensors whose data forms the occupancy map, if any are configured."""
         path = self.__file(file_path, "sensors_3d.yaml")
         content = load_yaml(path) if path.exists() else None
         if content and any(content.get("sensors") or ()):
@@ -206,14 +206,15 @@ class MoveItConfigsBuilder(ParameterBuilder):
             default_planning_pipeline: the pipeline to use by default.
             pipelines: the names of the pipelines; by default all pipelines for which the package has a file.
             load_all: whether the default also includes the pipelines for which MoveIt's package
-                ``moveit_configs_utils`` has
-                files, if this package is found.
+                ``moveit_configs_utils`` has files, if this package is found.
 
         Raises:
             RuntimeError: LAUNCH154, the default is not one of the pipelines.
         """
         folders = [self._package_path / _FOLDER, *_default_folder()]
-        names = list(pipelines) if pipelines is not None else _stems(folders if load_all else folders[:1], _PLANNING)
+        names = (
+            list(pipelines) if pipelines is not None else _find_stems(folders if load_all else folders[:1], _PLANNING)
+        )
         names = names or [default_planning_pipeline or _USUAL_PIPELINE]
         default = default_planning_pipeline or (_USUAL_PIPELINE if _USUAL_PIPELINE in names else names[0])
         if default not in names:
@@ -299,7 +300,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
 
     def __controllers(self) -> Path | None:
         folder = self._package_path / _FOLDER
-        names = _stems([folder], _CONTROLLERS)
+        names = _find_stems([folder], _CONTROLLERS)
         if len(names) > 1:
             names = [name for name in ("moveit", "moveit2", self.__name) if name in names] or names
             if names[0] not in ("moveit", "moveit2", self.__name):
@@ -334,8 +335,8 @@ def _model(path: Path, mappings: _Mappings) -> Any:
     return ParameterValue(Xacro(str(path), mappings=mappings), value_type=str)
 
 
-def _stems(folders: Sequence[Path], ending: str) -> list[str]:
-    """Return the names of the files in folders that have a suffix, without the suffix and duplicates."""
+def _find_stems(folders: Sequence[Path], ending: str) -> list[str]:
+    """Return the names of files with a suffix in folders, without the suffix and duplicates."""
     found = (path.name.removesuffix(ending) for folder in folders for path in sorted(folder.glob(f"*{ending}")))
     return list(dict.fromkeys(found))
 

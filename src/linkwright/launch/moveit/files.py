@@ -41,7 +41,7 @@ def load_file(file_path: str | Path, mappings: Mapping[str, Any] | None = None) 
         LinkwrightError: LAUNCH153, the file cannot be read.
     """
     text = _text(Path(file_path))
-    return text if mappings is None else _rendered(text, Path(file_path), mappings)
+    return text if mappings is None else _render_template(text, Path(file_path), mappings)
 
 
 def load_yaml(file_path: str | Path, mappings: Mapping[str, Any] | None = None) -> Any:
@@ -56,7 +56,7 @@ def load_yaml(file_path: str | Path, mappings: Mapping[str, Any] | None = None) 
     path = Path(file_path)
     text = _text(path)
     if mappings or any(mark in text for mark in _TEMPLATE_MARKS):
-        text = _rendered(text, path, mappings or {})
+        text = _render_template(text, path, mappings or {})
     try:
         return yaml.safe_load(text)
     except yaml.YAMLError as error:
@@ -106,7 +106,7 @@ def _check_exists(path: Path) -> None:
         raise error_at(Place.of_caller(), "LAUNCH153", message, missing_file_hint(path), ros_error=ros_error)
 
 
-def _rendered(text: str, path: Path, mappings: Mapping[str, Any]) -> str:
+def _render_template(text: str, path: Path, mappings: Mapping[str, Any]) -> str:
     try:
         import jinja2
     except ImportError as error:

@@ -66,7 +66,7 @@ def generate_setup_assistant_launch(moveit_config: MoveItConfigs) -> LaunchDescr
 
 def generate_static_virtual_joint_tfs_launch(moveit_config: MoveItConfigs) -> LaunchDescription:
     """Return a launch description of static transforms for the virtual joints of the SRDF."""
-    frames = [pair for text in moveit_config.robot_description_semantic.values() for pair in _virtual_joints(text)]
+    frames = [pair for text in moveit_config.robot_description_semantic.values() for pair in _read_virtual_joints(text)]
     return LaunchDescription(
         [
             Node(
@@ -209,7 +209,7 @@ def _path(configs: MoveItConfigs, file: str) -> str:
     return str(_folder(configs) / file)
 
 
-def _virtual_joints(text: Any) -> Iterator[tuple[str, str]]:
+def _read_virtual_joints(text: Any) -> Iterator[tuple[str, str]]:
     """Yield the parent frame and child link of each virtual joint in an SRDF.
 
     An SRDF that is evaluated during the launch yields none.

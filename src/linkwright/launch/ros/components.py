@@ -20,7 +20,7 @@ from linkwright.launch.model.substitution import (
 from linkwright.launch.ros.deprecated_arguments import with_deprecated_arguments
 from linkwright.launch.ros.names import (
     RemapRule,
-    evaluated_rules,
+    evaluate_rules,
     make_namespace_absolute,
     normalize_remap_rules,
     prefix_namespace,
@@ -90,7 +90,7 @@ class ComposableNode(Placed):
             kwargs["parameters"] = parse_parameters(parameters, parser)
         extra = entity.get_attr("extra_arg", data_type=Entities, optional=True)
         if extra is not None:
-            kwargs["extra_arguments"] = [_extra_argument(tag, parser) for tag in extra]
+            kwargs["extra_arguments"] = [_parse_extra_argument(tag, parser) for tag in extra]
         entity.assert_entity_completely_parsed()
         return cls, kwargs
 
@@ -165,7 +165,9 @@ class ComposableLifecycleNode(ComposableNode):
 
 
 def get_composable_node_load_request(description: ComposableNode, context: LaunchContext) -> Any:
-    """Return the request to load a node into a container, or None if the node's condition does not hold.
+    """Return the request to load a node into a container.
+
+    The result is None if the node's condition does not hold.
 
     Raises:
         LinkwrightError: the errors in the node's parameters.
@@ -187,7 +189,7 @@ def get_composable_node_load_request(description: ComposableNode, context: Launc
         request.node_namespace = namespace
     rules = [
         *(context.launch_configurations.get(REMAPPINGS) or ()),
-        *evaluated_rules(context, description.remappings or ()),
+        *evaluate_rules(context, description.remappings or ()),
     ]
     request.remap_rules = [f"{source}:={target}" for source, target in rules]
     full_name = f"{(namespace or '').rstrip('/')}/{request.node_name}"
@@ -257,7 +259,7 @@ def _as_runtime_error(error: LinkwrightError, path: Path) -> LinkwrightError:
     return as_ros_error(RuntimeError(f"{path}: {error.diagnostics[0].message}"), *error.diagnostics)
 
 
-def _extra_argument(tag: Entity, parser: Parser) -> dict[Any, Any]:
+def _parse_extra_argument(tag: Entity, parser: Parser) -> dict[Any, Any]:
     name = tuple(parser.parse_substitution(tag.get_attr("name")))
     value = parser.parse_substitution(tag.get_attr("value"))
     tag.assert_entity_completely_parsed()

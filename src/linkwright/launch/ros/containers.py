@@ -18,11 +18,11 @@ from linkwright.launch.ros.components import (
     get_composable_node_load_request,
 )
 from linkwright.launch.ros.deprecated_arguments import with_deprecated_arguments
-from linkwright.launch.ros.executables import Executable, installed_executable
+from linkwright.launch.ros.executables import Executable, find_installed_executable
 from linkwright.launch.ros.left_out import record_skipped_node, remove_skipped_nodes
-from linkwright.launch.ros.lifecycle import LifecycleEventManager, autostarts, call_service
+from linkwright.launch.ros.lifecycle import LifecycleEventManager, call_service, is_autostarted
 from linkwright.launch.ros.lifecycle_events import ChangeState
-from linkwright.launch.ros.names import make_namespace_absolute, repetition_warning
+from linkwright.launch.ros.names import make_namespace_absolute, record_node_start
 from linkwright.launch.ros.node import Node
 from linkwright.launch.ros.parsing import Entities
 from linkwright.packages import is_installed, is_substitute
@@ -132,7 +132,7 @@ class LoadComposableNodes(Action):
                 record_skipped_node(context, request.node_name)
             context.session.could_not_start(description, error)
             return
-        remark = repetition_warning(context, name)
+        remark = record_node_start(context, name)
         if remark is not None:
             log.warning_line(container, remark)
         log.info_line(_LOGGER, f"Loaded node '{name}' in container '{container}'")
@@ -198,12 +198,12 @@ class ComposableNodeContainer(Node):
 
         A container with third-party components cannot, if its program is installed.
         """
-        return super()._may_be_hosted(context, package, executable) and self._real_container(context) is None
+        return super()._may_be_hosted(context, package, executable) and self._find_installed_container(context) is None
 
     def _executable(self, finder: PackageFinder, package: str, executable: str) -> Executable:
         return self.__real or super()._executable(finder, package, executable)
 
-    def _real_container(self, context: LaunchContext) -> Executable | None:
+    def _find_installed_container(self, context: LaunchContext) -> Executable | None:
         from linkwright.nodes.options import COMPONENTS
 
         self.__real = None
@@ -219,7 +219,7 @@ class ComposableNodeContainer(Node):
                 perform_substitutions(context, normalize_to_list_of_substitutions(text))
                 for text in (self.node_package, self.node_executable)
             )
-            self.__real = installed_executable(context.session.finder, package, executable)
+            self.__real = find_installed_executable(context.session.finder, package, executable)
         return self.__real
 
 
@@ -253,7 +253,7 @@ def _monitor_lifecycle_node(context: LaunchContext, description: ComposableLifec
     """
     description.record_full_name(full_name)
     LifecycleEventManager(description).setup_lifecycle_manager(context)
-    if not autostarts(context, description.node_autostart):
+    if not is_autostarted(context, description.node_autostart):
         return
     from linkwright.launch.model.actions import EmitEvent
     from linkwright.launch.ros.lifecycle_events import OnStateTransition

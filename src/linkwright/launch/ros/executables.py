@@ -1,4 +1,4 @@
-"""Executables of packages: Linkwright's own, installed executables, and executables in sources."""
+"""Executables of packages: Linkwright's own, installed ones, and those in sources."""
 
 from __future__ import annotations
 
@@ -129,7 +129,7 @@ def executables_of(finder: PackageFinder, package: str) -> dict[str, Executable]
     return dict(sorted({**found, **ours}.items()))
 
 
-def installed_executable(finder: PackageFinder, package: str, name: str) -> Executable | None:
+def find_installed_executable(finder: PackageFinder, package: str, name: str) -> Executable | None:
     """Return a built program of a package, or None if there is none.
 
     Unlike in `executables_of`, Linkwright's own programs do not take precedence.
@@ -155,10 +155,10 @@ def find_executable(finder: PackageFinder, package: str, name: str) -> Executabl
     try:
         present = executables_of(finder, package)
     except PackageNotFoundError as error:
-        raise _no_package(finder, package, name, error) from error
+        raise _missing_package_error(finder, package, name, error) from error
     found = present.get(name)
     if found is None:
-        raise _no_executable(finder, package, name, present)
+        raise _missing_executable_error(finder, package, name, present)
     if found.entry_point is not None and found.path is None:
         return replace(found, path=_script(finder, found))
     return found
@@ -198,7 +198,7 @@ def _script(finder: PackageFinder, executable: Executable) -> Path:
 
 
 def _check_module(executable: Executable, entry: EntryPoint, root: Path) -> None:
-    """Check that the module of an entry point exists, so that the error is reported before the start.
+    """Check that the module of an entry point exists, before a process is started.
 
     Raises:
         LinkwrightError: LAUNCH131, there is no such module.
@@ -233,7 +233,9 @@ _NO_EXECUTABLES = phrase(
 # --- missing executables ----------------------------------------------------------------------------------------
 
 
-def _no_package(finder: PackageFinder, package: str, name: str, error: PackageNotFoundError) -> LinkwrightError:
+def _missing_package_error(
+    finder: PackageFinder, package: str, name: str, error: PackageNotFoundError
+) -> LinkwrightError:
     ours, theirs = builtin_packages(), finder.packages()
     hint = did_you_mean(package, (*ours, *theirs)) or error.diagnostics[0].hint
     message = phrase("package '{package}' of node executable '{name}' not found", package=package, name=name)
@@ -242,7 +244,9 @@ def _no_package(finder: PackageFinder, package: str, name: str, error: PackageNo
     return missing if is_misspelt(package, (*ours, *theirs)) else mark_unavailable(missing)
 
 
-def _no_executable(finder: PackageFinder, package: str, name: str, present: dict[str, Executable]) -> LinkwrightError:
+def _missing_executable_error(
+    finder: PackageFinder, package: str, name: str, present: dict[str, Executable]
+) -> LinkwrightError:
     share = finder.find(package)
     message = phrase("package '{package}' has no executable '{name}'", package=package, name=name)
     notes: tuple[Note, ...] = ()
@@ -254,7 +258,7 @@ def _no_executable(finder: PackageFinder, package: str, name: str, present: dict
         )
     elif share is not None:
         if not is_installed(share):
-            return _not_in_sources(package, name, share)
+            return _missing_in_sources_error(package, name, share)
         notes = (
             Note(
                 phrase(
@@ -269,7 +273,7 @@ def _no_executable(finder: PackageFinder, package: str, name: str, present: dict
     return mark_unavailable(error) if is_ours and not is_misspelt(name, present) else error
 
 
-def _not_in_sources(package: str, name: str, share: Path) -> LinkwrightError:
+def _missing_in_sources_error(package: str, name: str, share: Path) -> LinkwrightError:
     from linkwright.packages.programs.source_programs import source_programs
 
     programs = source_programs(share)
@@ -286,7 +290,7 @@ def _not_in_sources(package: str, name: str, share: Path) -> LinkwrightError:
         )
         return mark_unavailable(_lookup_error(message, (), advice))
     if not programs.is_complete and not is_misspelt(name, programs.names()):
-        return mark_unavailable(_not_known_from_sources(package, name, share))
+        return mark_unavailable(_unknown_program_error(package, name, share))
     notes = (Note(phrase("searched the entry points and installed programs of {share}", share=display_path(share))),)
     hint = did_you_mean(name, programs.names())
     if hint is None and programs.names():
@@ -298,8 +302,8 @@ def _not_in_sources(package: str, name: str, share: Path) -> LinkwrightError:
     )
 
 
-def _not_known_from_sources(package: str, name: str, share: Path) -> LinkwrightError:
-    """Return the error for a program that a package may build, although its sources do not show it."""
+def _unknown_program_error(package: str, name: str, share: Path) -> LinkwrightError:
+    """Return the error for a program that a package's sources do not show but may build."""
     message = phrase("executable '{name}' of package '{package}' is not available", name=name, package=package)
     note = Note(phrase("the files in {share} do not show which programs it builds", share=display_path(share)))
     advice = phrase(

@@ -23,7 +23,7 @@ def without_skipped_nodes(context: LaunchContext, package: str, parameters: dict
     """Return the parameters of a node, without skipped nodes if it is a lifecycle manager."""
     if package != _MANAGER or not isinstance(parameters.get(_MANAGED), Iterable):
         return parameters
-    return {**parameters, _MANAGED: _present(context, parameters[_MANAGED])}
+    return {**parameters, _MANAGED: _without_skipped(context, parameters[_MANAGED])}
 
 
 def remove_skipped_nodes(context: LaunchContext, request: Any) -> None:
@@ -35,10 +35,10 @@ def remove_skipped_nodes(context: LaunchContext, request: Any) -> None:
         return
     for parameter in request.parameters:
         if parameter.name == _MANAGED:
-            parameter.value.string_array_value = _present(context, parameter.value.string_array_value)
+            parameter.value.string_array_value = _without_skipped(context, parameter.value.string_array_value)
 
 
-def _present(context: LaunchContext, names: Iterable[str]) -> list[str]:
+def _without_skipped(context: LaunchContext, names: Iterable[str]) -> list[str]:
     kept = []
     for name in names:
         if name.rpartition("/")[2] in context.session.left_out:

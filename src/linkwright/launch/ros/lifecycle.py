@@ -175,12 +175,12 @@ class LifecycleNode(Node):
         self._expand_names(context)
         self.__manager.setup_lifecycle_manager(context)
         following = list(super().execute(context) or [])
-        if autostarts(context, self.__autostart):
+        if is_autostarted(context, self.__autostart):
             following += autostart_actions(self)
         return following
 
 
-def autostarts(context: LaunchContext, value: Any) -> bool:
+def is_autostarted(context: LaunchContext, value: Any) -> bool:
     """Return whether the ``autostart`` of a lifecycle node is true."""
     from linkwright.launch.model.markup.values import normalize_typed_substitution, perform_typed_substitution
 
@@ -205,7 +205,7 @@ def autostart_actions(action: Any) -> list[Any]:
     ]
 
 
-def unknown_transition(place: Any, text: str) -> Exception:
+def unknown_transition_error(place: Any, text: str) -> Exception:
     """Return the error for a transition that is not a number."""
     message = phrase("expected integer for lifecycle transition, got {text}", text=text)
     return error_at(place, "LAUNCH138", message, ros_error=ValueError(message))

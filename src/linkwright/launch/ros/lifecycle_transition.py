@@ -12,7 +12,7 @@ from linkwright.launch.model.action import Action
 from linkwright.launch.model.actions import EmitEvent, OpaqueFunction, RegisterEventHandler
 from linkwright.launch.model.event_handlers import BaseEventHandler, EventHandler
 from linkwright.launch.model.substitution import normalize_to_list_of_substitutions, perform_substitutions
-from linkwright.launch.ros.lifecycle import unknown_transition
+from linkwright.launch.ros.lifecycle import unknown_transition_error
 from linkwright.launch.ros.lifecycle_events import (
     ChangeState,
     OnStateTransition,
@@ -66,7 +66,7 @@ class LifecycleTransition(Action):
         self._handlers: dict[str, list[BaseEventHandler]] = {}
 
     def execute(self, context: LaunchContext) -> list[Action]:
-        """Return actions that request the first transitions and register handlers that request the others.
+        """Return actions that request the first transition of each node and handle the later ones.
 
         Raises:
             LinkwrightError: LAUNCH138, a transition ID is not a number, or its transition has no known goal state.
@@ -80,11 +80,13 @@ class LifecycleTransition(Action):
             asking.append(wishes[0])
             for number, following in zip(numbers, [*wishes[1:], self._ending(name)], strict=True):
                 start, goal = _GOALS[number]
-                handler = OnStateTransition(matcher=_arrival(name, start, goal), entities=[following], handle_once=True)
+                handler = OnStateTransition(
+                    matcher=_transition_matcher(name, start, goal), entities=[following], handle_once=True
+                )
                 self._handlers.setdefault(name, []).append(handler)
                 registering.append(RegisterEventHandler(handler))
             failing = EventHandler(
-                matcher=_arrival(name, None, "errorprocessing"),
+                matcher=_transition_matcher(name, None, "errorprocessing"),
                 entities=[self._ending(name, "error occured during transitions")],
                 handle_once=True,
             )
@@ -96,7 +98,7 @@ class LifecycleTransition(Action):
         try:
             number = int(text)
         except ValueError:
-            raise unknown_transition(self.place, text) from None
+            raise unknown_transition_error(self.place, text) from None
         if number not in _GOALS:
             message = phrase("transition {number} does not end in a state to wait for", number=number)
             raise error_at(self.place, "LAUNCH138", message, ros_error=KeyError(number))
@@ -118,7 +120,7 @@ def _wish(name: str, number: int) -> EmitEvent:
     return EmitEvent(event=ChangeState(lifecycle_node_matcher=matches_node_name(name), transition_id=number))
 
 
-def _arrival(name: str, start: str | None, goal: str) -> Any:
+def _transition_matcher(name: str, start: str | None, goal: str) -> Any:
     full_name = name if name.startswith("/") else f"/{name}"
 
     def matches(event: Event) -> bool:

@@ -69,7 +69,7 @@ def get_node_name_count(context: Any, node_name: str) -> int:
     return _counts(context).get(node_name, 0)
 
 
-def repetition_warning(context: Any, node_name: str) -> str | None:
+def record_node_start(context: Any, node_name: str) -> str | None:
     """Record the start of a node, and return a warning if another node has the same name.
 
     Returns:
@@ -154,7 +154,7 @@ def normalize_remap_rules(remap_rules: Iterable[Any]) -> Iterable[RemapRule]:
     return [normalize_remap_rule(rule) for rule in remap_rules]
 
 
-def evaluated_rules(context: LaunchContext, rules: Iterable[RemapRule]) -> list[tuple[str, str]]:
+def evaluate_rules(context: LaunchContext, rules: Iterable[RemapRule]) -> list[tuple[str, str]]:
     """Evaluate remapping rules, and return them as pairs of names."""
     return [
         (perform_substitutions(context, source), perform_substitutions(context, target)) for source, target in rules

@@ -29,11 +29,11 @@ from linkwright.launch.ros.left_out import record_skipped_node, without_skipped_
 from linkwright.launch.ros.names import (
     check_name,
     check_namespace,
-    evaluated_rules,
+    evaluate_rules,
     make_namespace_absolute,
     normalize_remap_rules,
     prefix_namespace,
-    repetition_warning,
+    record_node_start,
 )
 from linkwright.launch.ros.node_extensions import node_extensions
 from linkwright.launch.ros.parameter_lists import normalize_parameters
@@ -112,7 +112,7 @@ class Node(ExecuteProcess):
             command += ["--ros-args", *_listed(ros_arguments)]
         command.append("--ros-args")
         if name is not None:
-            command += ["-r", _DeferredWord("name", lambda: f"__node:={self.__expanded_node_name}")]
+            command += ["-r", _DeferredArgument("name", lambda: f"__node:={self.__expanded_node_name}")]
         super().__init__(cmd=command, name=exec_name, **kwargs)
         self.__package = package
         self.__node_executable = executable
@@ -175,7 +175,7 @@ class Node(ExecuteProcess):
 
     @property
     def expanded_remapping_rules(self) -> list[tuple[str, str]] | None:
-        """The evaluated remapping rules, starting with the rules of the scope; None if there are none."""
+        """The evaluated remapping rules, with those of the scope first; None if there are none."""
         return self.__expanded_remappings
 
     def is_node_name_fully_specified(self) -> bool:
@@ -207,7 +207,7 @@ class Node(ExecuteProcess):
             self.cmd.extend(normalize_to_list_of_substitutions(word) for word in added)
             process_name = self._run(context, package, executable)
         if self.is_node_name_fully_specified():
-            remark = repetition_warning(context, self.node_name)
+            remark = record_node_start(context, self.node_name)
             if remark is not None:
                 context.session.log.warning_line(process_name, remark)
         return None
@@ -254,7 +254,7 @@ class Node(ExecuteProcess):
         self.__scratch_folder = _scratch_folder(context)
         rules = [
             *(context.launch_configurations.get(REMAPPINGS) or ()),
-            *evaluated_rules(context, self.__remappings),
+            *evaluate_rules(context, self.__remappings),
         ]
         self.__expanded_remappings = rules or None
         if not self.hosted:
@@ -317,7 +317,7 @@ class Node(ExecuteProcess):
     def __extend_command(self) -> None:
         words: list[Any] = []
         if self.__expanded_node_namespace != self.UNSPECIFIED_NODE_NAMESPACE:
-            words += ["-r", _DeferredWord("ns", lambda: f"__ns:={self.__expanded_node_namespace}")]
+            words += ["-r", _DeferredArgument("ns", lambda: f"__ns:={self.__expanded_node_namespace}")]
         _ = self.__expanded_parameter_arguments
         for argument, is_file in self.__parameter_words or ():
             words += ["--params-file" if is_file else "-p", argument]
@@ -408,7 +408,7 @@ class Node(ExecuteProcess):
         return workspace_environment(context.session.finder, super()._environment(context))
 
 
-class _DeferredWord(Substitution):
+class _DeferredArgument(Substitution):
     """A command-line argument that is known only when the action starts the node.
 
     Args:

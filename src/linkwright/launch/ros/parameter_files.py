@@ -73,7 +73,10 @@ class ParameterFile(Placed):
 
     @property
     def allow_substs(self) -> Any:
-        """Whether substitutions in the file are evaluated: a boolean, or substitutions before `evaluate`."""
+        """Whether substitutions in the file are evaluated.
+
+        Before `evaluate`, the value may contain substitutions.
+        """
         return self._allow_substs if self._allowed is None else self._allowed
 
     def evaluate(self, context: LaunchContext) -> Path:
@@ -193,7 +196,7 @@ def substitute_text(source: SourceText, context: LaunchContext) -> str:
         start = opening.start()
         if start < done or any(begin <= start < end for begin, end in comments):
             continue
-        end = _end_of(text, start)
+        end = _substitution_end(text, start)
         place = MarkupPlace(source, start, end)
         try:
             value = perform_substitutions(context, parse_substitution(PlacedText(text[start:end], place)))
@@ -204,8 +207,11 @@ def substitute_text(source: SourceText, context: LaunchContext) -> str:
     return "".join([*parts, text[done:]])
 
 
-def _end_of(text: str, start: int) -> int:
-    """Return the offset after the substitution at an offset, or the end of the line if it is not closed."""
+def _substitution_end(text: str, start: int) -> int:
+    """Return the offset after the substitution that starts at an offset.
+
+    If it has no closing parenthesis, the result is the end of the line.
+    """
     depth = 0
     for offset in range(start, len(text)):
         if text[offset] == "(":

@@ -1,9 +1,8 @@
 """Normalization and evaluation of a node's ``parameters`` (``launch_ros.utilities``).
 
 Parameters are normalized, and thus checked, when the node is created. Paths become `ParameterFile` objects.
-Dictionaries
-become flat: their names are tuples of substitutions, and their values are plain values or tuples of substitutions.
-Evaluation converts each item to a path, a dictionary of values by name, or a `Parameter`.
+Dictionaries become flat: their names are tuples of substitutions, and their values are plain values or tuples of
+substitutions. Evaluation converts each item to a path, a dictionary of values by name, or a `Parameter`.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ from linkwright.launch.model.substitution import (
     perform_substitutions,
 )
 from linkwright.launch.ros.parameter_files import ParameterFile
-from linkwright.launch.ros.parameter_values import Parameter, ParameterValue, uniform, yaml_value
+from linkwright.launch.ros.parameter_values import Parameter, ParameterValue, parse_yaml_value, uniform
 
 Name = tuple[Substitution, ...]
 NormalizedDict = dict[Name, Any]
@@ -217,4 +216,4 @@ def _evaluated_value(context: LaunchContext, name: str, value: Any) -> Any:
 def _evaluated_text(context: LaunchContext, name: str, parts: tuple[Substitution, ...]) -> Any:
     if len(parts) == 1 and isinstance(parts[0], PlainItem):
         return parts[0].value
-    return yaml_value(perform_substitutions(context, parts), name, parts[0].place)
+    return parse_yaml_value(perform_substitutions(context, parts), name, parts[0].place)

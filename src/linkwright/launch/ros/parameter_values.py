@@ -149,7 +149,7 @@ class Parameter:
         return self._rule
 
 
-def yaml_value(text: str, name: str, place: Place | None) -> Any:
+def parse_yaml_value(text: str, name: str, place: Place | None) -> Any:
     """Parse the text of a parameter without a type as YAML, as launch_ros does.
 
     Lists become tuples.

@@ -149,7 +149,7 @@ class NodeParameters:
             elif isinstance(source, tuple):
                 arguments.append((rule(*source), False))
             else:
-                arguments.append((write_file(source, node, folder), True))
+                arguments.append((write_parameter_file(source, node, folder), True))
         return arguments
 
 
@@ -160,7 +160,7 @@ def _warn(context: LaunchContext, code: str, message: Phrase, hint: Phrase | Non
 
 
 def scope_parameters(given: Iterable[Any], context: LaunchContext) -> NodeParameters:
-    """Return the parameters of a node's scope, which `SetParameter` and `SetParametersFromFile` set."""
+    """Return the parameters that `SetParameter` and `SetParametersFromFile` set in a scope."""
     found = NodeParameters()
     for item in given:
         if isinstance(item, tuple):
@@ -198,7 +198,7 @@ def rule(name: str, value: Any) -> str:
     return f"{name}:={text.removesuffix(chr(10)).removesuffix(chr(10) + '...')}"
 
 
-def write_file(parameters: dict[str, Any], node: str | None, folder: Path | None) -> str:
+def write_parameter_file(parameters: dict[str, Any], node: str | None, folder: Path | None) -> str:
     """Write parameter values for a node to a new file, and return the path of the file.
 
     If the node's name is not known, the values are for any node.

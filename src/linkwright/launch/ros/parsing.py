@@ -101,7 +101,7 @@ def _nested(tags: list[Entity], parser: Parser) -> dict[Any, Any]:
                 with reading_markup_at(tag.place):
                     found[name] = ParameterValue(parser.parse_if_substitutions(value), value_type=data_type)
             except (TypeError, ValueError) as error:
-                raise _not_of_type(tag, value, identifier, error) from error
+                raise _type_error(tag, value, identifier, error) from error
         elif inside:
             found[name] = _nested(inside, parser)
         else:
@@ -109,7 +109,7 @@ def _nested(tags: list[Entity], parser: Parser) -> dict[Any, Any]:
     return found
 
 
-def _not_of_type(tag: Entity, value: Any, identifier: str | None, error: Exception) -> Exception:
+def _type_error(tag: Entity, value: Any, identifier: str | None, error: Exception) -> Exception:
     """Return the error for a ``param`` tag whose value does not have its type.
 
     A LinkwrightError with a code other than LAUNCH132 is returned unchanged.

@@ -113,13 +113,13 @@ class RewrittenYaml(_YamlFileSubstitution):
 
         content = self._load(context)
         values = {name: self._converted(text) for name, text in _performed(context, self._values).items()}
-        content = _with_texts(content, _performed(context, self._texts))
-        present = {".".join(path) for path in _leaves(content)}
-        content = _with_values(content, values, ())
+        content = _replace_texts(content, _performed(context, self._texts))
+        present = {".".join(path) for path in _value_paths(content)}
+        content = _replace_values(content, values, ())
         for path, value in values.items():
             if path not in present and _PARAMETERS in path.split("."):
                 _add(content, path.split("."), value)
-        content = _with_keys(content, _performed(context, self._keys))
+        content = _replace_keys(content, _performed(context, self._keys))
         root = "" if self._root_key is None else perform_substitutions(context, self._root_key)
         return _write_file(context, yaml.dump({root: content} if root else content), ".yaml")
 
@@ -135,7 +135,7 @@ class RewrittenYaml(_YamlFileSubstitution):
         return text
 
 
-def _leaves(content: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[str, ...]]:
+def _value_paths(content: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[str, ...]]:
     """Yield the path of each value in nested dictionaries and lists, as a tuple of keys."""
     if isinstance(content, dict):
         items: Any = content.items()
@@ -145,10 +145,10 @@ def _leaves(content: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[str, ...
         yield path
         return
     for key, value in items:
-        yield from _leaves(value, (*path, str(key)))
+        yield from _value_paths(value, (*path, str(key)))
 
 
-def _with_values(content: Any, values: Mapping[str, Any], path: tuple[str, ...]) -> Any:
+def _replace_values(content: Any, values: Mapping[str, Any], path: tuple[str, ...]) -> Any:
     """Return the content with values replaced.
 
     Args:
@@ -157,28 +157,30 @@ def _with_values(content: Any, values: Mapping[str, Any], path: tuple[str, ...])
         path: the keys above the content.
     """
     if isinstance(content, list):
-        return [_with_values(item, values, (*path, str(number))) for number, item in enumerate(content)]
+        return [_replace_values(item, values, (*path, str(number))) for number, item in enumerate(content)]
     if isinstance(content, dict):
         made = {}
         for key, value in content.items():
             name = str(key)
             is_group = isinstance(value, dict)
-            made[key] = values[name] if name in values and not is_group else _with_values(value, values, (*path, name))
+            made[key] = (
+                values[name] if name in values and not is_group else _replace_values(value, values, (*path, name))
+            )
         return made
     return values.get(".".join(path), content)
 
 
-def _with_keys(content: Any, keys: Mapping[str, str]) -> Any:
+def _replace_keys(content: Any, keys: Mapping[str, str]) -> Any:
     if not isinstance(content, dict):
         return content
-    return {keys.get(key, key): _with_keys(value, keys) for key, value in content.items()}
+    return {keys.get(key, key): _replace_keys(value, keys) for key, value in content.items()}
 
 
-def _with_texts(content: Any, texts: Mapping[str, str]) -> Any:
+def _replace_texts(content: Any, texts: Mapping[str, str]) -> Any:
     if isinstance(content, dict):
-        return {key: _with_texts(value, texts) for key, value in content.items()}
+        return {key: _replace_texts(value, texts) for key, value in content.items()}
     if isinstance(content, list):
-        return [_with_texts(item, texts) for item in content]
+        return [_replace_texts(item, texts) for item in content]
     return texts.get(content, content) if isinstance(content, str) else content
 
 
@@ -231,7 +233,7 @@ class ReplaceString(_YamlFileSubstitution):
 
 
 class HasNodeParams(_YamlFileSubstitution):
-    """A test that evaluates to ``True`` if a parameter file has parameters for a node, else to ``False``."""
+    """A test whether a parameter file has parameters for a node: ``True`` or ``False``."""
 
     def __init__(self, source_file: SomeSubstitutionsType, node_name: str) -> None:
         super().__init__(source_file)

@@ -18,7 +18,7 @@ from linkwright.launch.model.substitution import (
     perform_substitutions,
 )
 from linkwright.launch.model.substitutions import PathJoinSubstitution
-from linkwright.launch.model.substitutions.configuration import default_texts
+from linkwright.launch.model.substitutions.configuration import normalize_default
 from linkwright.launch.ros.executables import find_executable
 from linkwright.packages import current_finder, install_prefix
 
@@ -102,7 +102,7 @@ class ParameterSubstitution(_LaunchRosSubstitution, tag="param", shown="Paramete
     """The value of a parameter that `SetParameter` set in the scope."""
 
     name: Texts = Texts()
-    default: AnyOptionalTexts = AnyOptionalTexts(default=None, kw_only=True, read=default_texts)
+    default: AnyOptionalTexts = AnyOptionalTexts(default=None, kw_only=True, read=normalize_default)
 
     def perform(self, context: LaunchContext) -> str:
         """Return the value as text.

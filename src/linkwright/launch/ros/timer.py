@@ -26,12 +26,12 @@ class RosTimer(TimerAction):
         node = context.session.host.launcher_node
 
         def schedule(seconds: float, due: Callable[[], None]) -> Scheduled:
-            return _OneShot(node, seconds, due)
+            return _OneShotTimer(node, seconds, due)
 
         return schedule
 
 
-class _OneShot:
+class _OneShotTimer:
     """A timer of a node that calls a function once."""
 
     def __init__(self, node: Node, seconds: float, due: Callable[[], None]) -> None:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 _CONTAINER = {"container_name": "ros_gz_container", "create_own_container": "False", "use_composition": "False"}
 
 
-class _OneNode(Action, ABC):
+class _SingleNodeAction(Action, ABC):
     """The base class of actions that start a single node with text options.
 
     Args:
@@ -72,7 +72,7 @@ def _text(value: Any) -> Any:
 
 
 @expose_action("gz_server")
-class GzServer(_OneNode):
+class GzServer(_SingleNodeAction):
     """Starts the simulation without a window.
 
     Args:
@@ -87,7 +87,7 @@ class GzServer(_OneNode):
 
 
 @expose_action("gz_spawn_model")
-class GzSpawnModel(_OneNode):
+class GzSpawnModel(_SingleNodeAction):
     """Spawns a model in the world.
 
     Args:
@@ -110,7 +110,7 @@ class GzSpawnModel(_OneNode):
 
 
 @expose_action("ros_gz_bridge")
-class RosGzBridge(_OneNode):
+class RosGzBridge(_SingleNodeAction):
     """Starts a bridge between topics of the simulation and topics of ROS.
 
     Args:

@@ -236,7 +236,7 @@ class SeveralShapes(Rule):
                     )
 
 
-class ShapeFar(Rule):
+class ShapeTooFar(Rule):
     """A shape or a centre of mass more than twenty metres from its link's frame.
 
     ## Why

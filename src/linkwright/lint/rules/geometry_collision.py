@@ -10,7 +10,7 @@ from linkwright.lint.extents import MARKER
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.geometry import is_scenery
-from linkwright.lint.rules.meshes import Millimetres
+from linkwright.lint.rules.meshes import MeshInMillimetres
 from linkwright.lint.subject import Subject
 from linkwright.lint.walk import SURROUNDINGS
 from linkwright.loading.lean_typing import TYPE_CHECKING
@@ -122,7 +122,7 @@ class MissingVisual(Rule):
                 )
 
 
-class CollisionApart(Rule):
+class CollisionAwayFromVisual(Rule):
     """Collision shapes that do not touch the box around the visuals.
 
     ## Why
@@ -152,7 +152,7 @@ class CollisionApart(Rule):
     name = "collision-apart"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        for link, seen, felt in _comparable(subject):
+        for link, seen, felt in _comparable_links(subject):
             gap = seen.gap(felt)
             is_apart = _FAR > gap > max(0.25 * min(seen.diagonal, felt.diagonal), 1e-3)
             if is_apart and not _is_moved_to_a_child(subject, link, felt):
@@ -209,7 +209,7 @@ class CollisionSize(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         factor = self.option(subject, "factor", float)
-        for link, seen, felt in _comparable(subject):
+        for link, seen, felt in _comparable_links(subject):
             ratio = felt.diagonal / seen.diagonal
             if not 1 / factor <= ratio <= factor:
                 yield self.report(
@@ -249,12 +249,12 @@ def _links_with_both_shapes(subject: Subject) -> Iterator[Link]:
     return (link for link in subject.links if link.visuals and link.collisions)
 
 
-def _comparable(subject: Subject) -> Iterator[tuple[Link, Bounds, Bounds]]:
+def _comparable_links(subject: Subject) -> Iterator[tuple[Link, Bounds, Bounds]]:
     """Yield each link with comparable shapes, and the boxes of its visuals and collisions.
 
     Links with tiny or unreadable shapes, or with meshes that are probably in millimetres, are left out.
     """
-    largest = math.inf if is_scenery(subject) else Millimetres().option(subject, "largest", float)
+    largest = math.inf if is_scenery(subject) else MeshInMillimetres().option(subject, "largest", float)
     for link in _links_with_both_shapes(subject):
         seen, felt = _bounds(subject, link.visuals), _bounds(subject, link.collisions)
         if seen is None or felt is None or min(seen.diagonal, felt.diagonal) < MARKER:

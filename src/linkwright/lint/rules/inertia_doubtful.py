@@ -88,7 +88,7 @@ def _shared_tensors(subject: Subject, least: int) -> Iterator[list[tuple[Link, I
             yield sharing
 
 
-class TurnedSphere(Rule):
+class RotatedIsotropicInertia(Rule):
     """A rotation in the `<origin>` of an inertia that is the same about every axis.
 
     ## Why

@@ -28,16 +28,16 @@ if TYPE_CHECKING:
 _UNITS = ((1e3, "g m2"), (1e4, "kg cm2"), (1e6, "kg mm2"), (1e9, "g mm2"))
 """The value of 1 kg m2 in other units, which may have been written instead."""
 
-_BEYOND_BELIEF = 20.0
+_TOO_FAR = 20.0
 """From this distance on, in m, `shape-far` reports an origin."""
 
-_SLIP = 1.0
+_LEAST_SUSPECT_MASS = 1.0
 """Masses below this one, in kg, are not in grams by mistake; on small frames they are there to please a simulator."""
 
-_BALLAST = 10.0
-_ROUGHLY = 3.0
+_BALLAST_FACTOR = 10.0
+_ESTIMATE_FACTOR = 3.0
 
-_ALMOST_NOTHING = 1e-3
+_LENGTH_TOLERANCE = 1e-3
 """Differences smaller than this, in m, are none."""
 
 
@@ -80,9 +80,9 @@ class DensityTooHigh(Rule):
 
         for link, inertial in subject.extents.links_with_relevant_mass:
             bounds, volume = subject.extents.link_bounds(link), subject.extents.volume(link)
-            if bounds is None or volume is None or bounds.diagonal <= MARKER or inertial.mass < _SLIP:
+            if bounds is None or volume is None or bounds.diagonal <= MARKER or inertial.mass < _LEAST_SUSPECT_MASS:
                 continue
-            if min(bounds.size) < _ALMOST_NOTHING / 10:
+            if min(bounds.size) < _LENGTH_TOLERANCE / 10:
                 continue  # a sheet: its thickness is not meaningful
             if subject.bodies.includes_massless_links(link):
                 around = subject.extents.body_bounds(link)
@@ -117,8 +117,8 @@ class DensityTooHigh(Rule):
         """Return the tolerated density of a link as a multiple of the density of osmium."""
         body = subject.bodies.of(link.name)
         if body is not None and body.joint is None:
-            return _BALLAST
-        return _ROUGHLY if inertial.mass == float(f"{inertial.mass:.0e}") else 1.0
+            return _BALLAST_FACTOR
+        return _ESTIMATE_FACTOR if inertial.mass == float(f"{inertial.mass:.0e}") else 1.0
 
 
 class DensityTooLow(Rule):
@@ -209,10 +209,10 @@ class CenterOutside(Rule):
         margin = self.option(subject, "margin", float)
         for link, inertial, bounds in _without_placeholders(subject):
             center = inertial.origin.xyz
-            if max(map(abs, center)) > _BEYOND_BELIEF or _is_at_the_joint(subject, link, inertial):
+            if max(map(abs, center)) > _TOO_FAR or _is_at_the_joint(subject, link, inertial):
                 continue
             distance = bounds.distance(center)
-            if distance > max(margin * bounds.diagonal, _ALMOST_NOTHING):
+            if distance > max(margin * bounds.diagonal, _LENGTH_TOLERANCE):
                 x, y, z = center
                 scaled = bounds.distance((x / 1000, y / 1000, z / 1000)) == 0
                 yield self.report(
@@ -230,7 +230,7 @@ class CenterOutside(Rule):
                 )
 
 
-class CenterForgotten(Rule):
+class InertialOriginMissing(Rule):
     """An `<inertial>` without `<origin>` on a link whose shapes are to one side of its frame.
 
     ## Why
@@ -341,7 +341,7 @@ class InertiaTooLarge(Rule):
             part(inertial, "inertia"),
             name,
             notes=[Note(possible), *([Note(name_others(others))] if others else [])],
-            hint=_COMPUTE if usual <= 0 or _is_made_up(inertial) else _unit_hint(largest / usual) or _COMPUTE,
+            hint=_COMPUTE if usual <= 0 or _is_round_number(inertial) else _unit_hint(largest / usual) or _COMPUTE,
         )
 
 
@@ -422,7 +422,7 @@ def _is_origin_off_center(bounds: Bounds) -> bool:
     It is if its distance from the centre exceeds 0.45 of an edge.
     """
     ends = zip(bounds.center, bounds.size, strict=True)
-    return any(abs(middle) - 0.45 * size > _ALMOST_NOTHING for middle, size in ends)
+    return any(abs(middle) - 0.45 * size > _LENGTH_TOLERANCE for middle, size in ends)
 
 
 _COMPUTE = phrase("`linkwright inertia` computes it from the link's shapes")
@@ -434,7 +434,7 @@ def _largest_uniform_moment(bounds: Bounds, mass: float) -> float:
     return mass * (squares[1] + squares[2]) / 12
 
 
-def _is_made_up(inertial: Inertial) -> bool:
+def _is_round_number(inertial: Inertial) -> bool:
     """Return whether a tensor consists of the same round number three times, such as 1 1 1.
 
     No wrong unit explains such a tensor.

@@ -14,7 +14,7 @@ from linkwright.lint.walk import format_number, joints, parts, values
 from linkwright.urdf import Joint
 from linkwright.urdf.values import plain
 
-_NO_TILT = 1e-6
+_TILT_TOLERANCE = 1e-6
 """Tilts up to this one, in rad, are what a program's arithmetic leaves: a thousandth of a millimetre in a metre."""
 _MOVING = ("revolute", "continuous", "prismatic", "planar")
 _TOLERANCE = 1e-3
@@ -247,9 +247,9 @@ class AxisTilted(Rule):
             main = max(range(3), key=lambda index, found=direction: abs(found[index]))  # type: ignore[misc]
             rest = sqrt(sum(part * part for index, part in enumerate(direction) if index != main))
             tilt = rest / abs(direction[main])
-            if not _NO_TILT < tilt <= largest:
+            if not _TILT_TOLERANCE < tilt <= largest:
                 continue
-            straight = " ".join(plain(float(round(part)) + 0.0) for part in _snapped(direction, main))
+            straight = " ".join(plain(float(round(part)) + 0.0) for part in _snap_to_axis(direction, main))
             yield self.report(
                 phrase(
                     "the axis of joint '{name}' is almost {straight}: '{xyz}'",
@@ -317,5 +317,5 @@ def _component(part: float) -> str:
     return plain(float(f"{part:.6g}") + 0.0)
 
 
-def _snapped(direction: tuple[float, ...], main: int) -> list[float]:
+def _snap_to_axis(direction: tuple[float, ...], main: int) -> list[float]:
     return [(1.0 if part > 0 else -1.0) if index == main else 0.0 for index, part in enumerate(direction)]

@@ -112,7 +112,7 @@ class MimicOfFixed(Rule):
                 )
 
 
-class MimicStandsStill(Rule):
+class MimicMultiplierZero(Rule):
     """A joint that mimics another with multiplier 0.
 
     ## Why

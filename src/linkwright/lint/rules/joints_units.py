@@ -64,7 +64,7 @@ class LimitInDegrees(Rule):
                     )
 
 
-class LimitEndless(Rule):
+class LimitPracticallyUnbounded(Rule):
     """A revolute joint with limits so large that it might as well be continuous.
 
     ## Why

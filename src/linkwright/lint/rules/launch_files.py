@@ -172,9 +172,9 @@ class LaunchedFileMissing(Rule):
         for file in package.launch_files.values():
             for shared in file.paths:
                 if (shared.package, shared.path) not in made:
-                    yield from self._of_path(shared, file, package, subject)
+                    yield from self._check_path(shared, file, package, subject)
 
-    def _of_path(
+    def _check_path(
         self, shared: SharedFile, file: LaunchFile, package: PackageContext, subject: Subject
     ) -> Iterator[Diagnostic]:
         if not _FILE.search(shared.path) or "*" in shared.path:

@@ -120,9 +120,9 @@ class LaunchedExecutableUnknown(PackageRule):
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
         """Yield a finding for each unknown executable in the launch files of a package."""
         for file in package.launch_files.values():
-            yield from self._of_file(file, package)
+            yield from self._check_file(file, package)
 
-    def _of_file(self, file: LaunchFile, package: PackageContext) -> Iterator[Diagnostic]:
+    def _check_file(self, file: LaunchFile, package: PackageContext) -> Iterator[Diagnostic]:
         for node in file.nodes:
             if node.package is None or node.executable is None:
                 continue

@@ -116,7 +116,7 @@ class DescriptionNotTyped(Rule):
         if package is None:
             return
         for file in package.launch_files.values():
-            found = [] if file.python is None else list(_untyped(file.python))
+            found = [] if file.python is None else list(_untyped_descriptions(file.python))
             refused = _first_invalid_yaml_description(file, package, subject) if found else None
             if refused is None:
                 continue
@@ -280,7 +280,7 @@ class _Untyped(NamedTuple):
     fix: Fix | None
 
 
-def _untyped(python: PythonFile) -> Iterator[_Untyped]:
+def _untyped_descriptions(python: PythonFile) -> Iterator[_Untyped]:
     for node in ast.walk(python.tree):
         if not isinstance(node, ast.Dict):
             continue

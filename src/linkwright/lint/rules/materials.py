@@ -17,7 +17,7 @@ from linkwright.urdf.reader import read_material
 from linkwright.urdf.report import UrdfReport
 from linkwright.xmltree import Element
 
-_UNSEEN = lazy_pattern(r"invisib|transparen|hidden|unseen|clear|none|null|empty|dummy", re.IGNORECASE)
+_INVISIBLE_NAME = lazy_pattern(r"invisib|transparen|hidden|unseen|clear|none|null|empty|dummy", re.IGNORECASE)
 
 _ALIKE = 0.1001
 """The largest difference of a channel, of 1 and with room for rounding, between colours that look alike."""
@@ -135,7 +135,7 @@ class InvisibleMaterial(Rule):
         for material in definitions(subject):
             element = material.element
             if material.name:
-                if material.name in known or _UNSEEN.search(material.name):
+                if material.name in known or _INVISIBLE_NAME.search(material.name):
                     continue
                 known.add(material.name)
             if material.rgba is not None and material.rgba[3] == 0 and element is not None:
@@ -283,7 +283,7 @@ class NoMaterial(Rule):
                 )
 
 
-class AlikeNames(Rule):
+class MaterialNamesDifferInCase(Rule):
     """Two materials whose names differ only in upper and lower case.
 
     ## Why

@@ -168,7 +168,7 @@ class UnevenScale(Rule):
                 )
 
 
-class Millimetres(Rule):
+class MeshInMillimetres(Rule):
     """A mesh that is larger than a house after scaling.
 
     ## Why
@@ -215,7 +215,7 @@ class Millimetres(Rule):
                 )
 
 
-class TooSmall(Rule):
+class MeshTooSmall(Rule):
     """A mesh that is smaller than a millimetre after scaling.
 
     ## Why

@@ -136,7 +136,7 @@ def _is_beside_mujoco(folder: Path) -> bool:
     return False
 
 
-class HomePath(Rule):
+class MachineSpecificPath(Rule):
     """A mesh URI that contains a folder of one computer or of one ROS distribution.
 
     ## Why
@@ -227,7 +227,7 @@ class UnknownEnding(Rule):
             )
 
 
-class AwkwardName(Rule):
+class UnportableMeshName(Rule):
     """A mesh URI with blanks or non-ASCII letters.
 
     ## Why

@@ -222,7 +222,7 @@ class WrongCase(Rule):
             twin = case_twin(path)
             if twin is None or not twin.is_file():
                 continue
-            better = _with_case(use.mesh.filename, twin)
+            better = _with_case_of(use.mesh.filename, twin)
             yield self.report(
                 phrase(
                     "the mesh file is named '{name}', which differs from '{path_name}' in upper and lower case",
@@ -328,7 +328,7 @@ class UnreadableMesh(Rule):
             yield self.report(found.message, use.element, "filename", hint=hint)
 
 
-def _with_case(uri: str, twin: Path) -> str:
+def _with_case_of(uri: str, twin: Path) -> str:
     """Return a URI with the upper and lower case of an existing file at the end of its path."""
     parts = uri.split("/")
     for back, name in enumerate(reversed(twin.parts), start=1):

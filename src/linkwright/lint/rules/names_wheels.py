@@ -174,9 +174,9 @@ class WheelHasLimits(Rule):
         carrying = {other.parent for joint in turning for other in (joint, *joints_above(robot, joint))}
         for wheel in wheels(subject, "revolute"):
             joint = wheel.joint
-            if joint.child in carrying or "wheel" not in joint.child.lower() or _is_wide(joint):
+            if joint.child in carrying or "wheel" not in joint.child.lower() or _allows_many_turns(joint):
                 continue
-            if joint.element is None or not _rolls(wheel):
+            if joint.element is None or not _rolls_about_own_axis(wheel):
                 continue
             message = phrase("the wheel on joint '{name}' cannot turn freely: the joint is revolute", name=joint.name)
             yield self.report(message, joint.element, "type", hint=phrase('write type="continuous"'))
@@ -237,7 +237,7 @@ class WheelAxis(Rule):
             yield self.report(message, element if element is not None else wheel.joint.element, attribute, hint=hint)
 
 
-class WheelsTurnAgainst(Rule):
+class WheelAxesOpposed(Rule):
     """The axes of a left and a right wheel point in opposite directions.
 
     ## Why
@@ -385,7 +385,7 @@ def _disc_axes(link: Link) -> Iterator[Vector3]:
             yield rotated(placement(part.origin).rotation, (0.0, 0.0, 1.0))
 
 
-def _rolls(wheel: Wheel) -> bool:
+def _rolls_about_own_axis(wheel: Wheel) -> bool:
     """Return whether the joint rotates the wheel about the axis of its cylinder.
 
     If the link has no flat cylinder, the axis must point to the side.
@@ -397,7 +397,7 @@ def _rolls(wheel: Wheel) -> bool:
     return any(abs(dot(disc, wheel.joint.axis)) / size >= _AXIS_TOLERANCE for disc in discs)
 
 
-def _is_wide(joint: Joint) -> bool:
+def _allows_many_turns(joint: Joint) -> bool:
     """Return whether the limits of a joint span more than 1000 rad, so that a wheel can roll."""
     return joint.limit is not None and joint.limit.upper - joint.limit.lower > 1000.0
 

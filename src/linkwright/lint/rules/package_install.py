@@ -18,7 +18,7 @@ from linkwright.loading.lean_typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from linkwright.lint.package import PackageContext
     from linkwright.packages.readers.cmake import CMakeFile
-    from linkwright.packages.readers.setup_py import Installed, SetupFile
+    from linkwright.packages.readers.setup_py import DataFile, SetupFile
 
 _SHARED = lazy_pattern(
     r".*\.(urdf|xacro|sdf|world|rviz|stl|dae|obj|glb|gltf|launch\.py|launch\.xml|launch\.yaml|srdf|yaml)$",
@@ -125,11 +125,11 @@ class FolderNotInstalled(PackageRule):
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
         """Yield a finding for each shared folder that is not installed."""
         if package.setup is not None and package.cmake is None:
-            yield from self._by_setup(package, package.setup)
+            yield from self._check_setup(package, package.setup)
         elif package.cmake is not None and package.setup is None:
-            yield from self._by_cmake(package, package.cmake)
+            yield from self._check_cmake(package, package.cmake)
 
-    def _by_setup(self, package: PackageContext, setup: SetupFile) -> Iterator[Diagnostic]:
+    def _check_setup(self, package: PackageContext, setup: SetupFile) -> Iterator[Diagnostic]:
         if not setup.call or not setup.is_complete:
             return
         files = {file for item in setup.installed for file in item.files(package.folder)}
@@ -149,7 +149,7 @@ class FolderNotInstalled(PackageRule):
             severity = self._severity(package, [folder, *others])
             yield self.report(message, span=setup.data_files_span, source=setup.source, hint=hint, severity=severity)
 
-    def _by_cmake(self, package: PackageContext, cmake: CMakeFile) -> Iterator[Diagnostic]:
+    def _check_cmake(self, package: PackageContext, cmake: CMakeFile) -> Iterator[Diagnostic]:
         if not cmake.is_complete or cmake.foreign or not cmake.is_ament:
             return
 
@@ -206,7 +206,7 @@ class FileNotInstalled(PackageRule):
         setup = package.setup
         if setup is None or package.cmake is not None or not setup.is_complete:
             return
-        places: dict[str, Installed] = {}
+        places: dict[str, DataFile] = {}
         files: set[str] = set()
         for item in setup.installed:
             for file in item.files(package.folder):

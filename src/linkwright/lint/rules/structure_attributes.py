@@ -11,9 +11,9 @@ from linkwright.lint.subject import Subject
 from linkwright.lint.unread import (
     attribute_name_span,
     hints_of_reader,
+    intended_attribute,
     is_expected_attribute,
     is_misspelt,
-    meant_attribute,
 )
 
 
@@ -46,7 +46,7 @@ class MisspeltAttribute(Rule):
         """Report every unread attribute whose name is similar to that of an absent URDF attribute."""
         hints = hints_of_reader(subject)
         for place, attribute in subject.structure.unknown_attributes:
-            meant = meant_attribute(place, attribute)
+            meant = intended_attribute(place, attribute)
             if meant is None or f"'{attribute}'" in hints.get(place.element.span(), ""):
                 continue
             span = attribute_name_span(place.element, attribute)
@@ -91,7 +91,7 @@ class UnknownAttribute(Rule):
         for place, attribute in subject.structure.unknown_attributes:
             if not is_expected_attribute(attribute):
                 continue
-            if meant_attribute(place, attribute) is not None:
+            if intended_attribute(place, attribute) is not None:
                 continue
             if f"'{attribute}'" in hints.get(place.element.span(), ""):
                 continue

@@ -13,10 +13,10 @@ from linkwright.lint.unread import (
     HOMES,
     INNER_EXTENSIONS,
     hints_of_reader,
+    intended_element,
     is_expected_element,
     is_misspelt,
     location_phrase,
-    meant_element,
 )
 from linkwright.lint.walk import values
 from linkwright.urdf import schema
@@ -53,7 +53,7 @@ class MisspeltElement(Rule):
         """Report every unread element that probably misspells an element allowed in its parent."""
         reported = hints_of_reader(subject)
         for place, child in subject.structure.unknown_elements:
-            meant = meant_element(place.rule, child)
+            meant = intended_element(place.rule, child)
             if meant is None or child.span() in reported:
                 continue
             yield self.report(
@@ -165,7 +165,7 @@ class UnknownElement(Rule):
                 continue
             if not is_expected_element(child.tag):
                 continue
-            if meant_element(place.rule, child) is None and child.span() not in reported:
+            if intended_element(place.rule, child) is None and child.span() not in reported:
                 known = ", ".join(f"<{rule.tag}>" for rule in place.rule.children)
                 yield self.report(
                     phrase("<{tag}> in {place} is not read", tag=child.tag, place=location_phrase(place)),

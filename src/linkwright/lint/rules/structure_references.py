@@ -33,7 +33,7 @@ def _without_siblings(name: str, known: Iterable[str]) -> list[str]:
     return [each for each in known if _NUMBER.findall(each) == _NUMBER.findall(name)]
 
 
-def _kind_meant(gazebo: Element, name: str) -> str:
+def _intended_kind(gazebo: Element, name: str) -> str:
     """Return what a `<gazebo>` probably refers to: ``link``, ``joint``, or empty if unknown.
 
     The content of the `<gazebo>` decides, or else the name.
@@ -93,7 +93,7 @@ class GazeboReferenceUnknown(Rule):
         lost = [(element, name) for element, name in named if name not in links | joints]
         are_few = 2 * len(lost) < len(named)
         for element, name in lost:
-            kind = _kind_meant(element, name)
+            kind = _intended_kind(element, name)
             known = {"link": links, "joint": joints}.get(kind, links | joints)
             alike = _without_siblings(name, known)
             meant = misspelling_of(name, alike)

@@ -13,7 +13,7 @@ from linkwright.urdf import schema
 from linkwright.xmltree import Element
 
 
-class NothingToSee(Rule):
+class NoShapes(Rule):
     """A robot with several links but no shapes.
 
     ## Why

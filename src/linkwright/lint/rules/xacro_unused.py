@@ -265,9 +265,9 @@ class UnusedMacroParameter(XacroRule):
             for macro in file.macros:
                 if next(macro.element.elements(), None) is None:
                     continue  # an empty macro with the parameters of others that replace it
-                yield from (each for name, each in self._of_macro(macro, file, facts) if name not in shared)
+                yield from (each for name, each in self._check_macro(macro, file, facts) if name not in shared)
 
-    def _of_macro(self, macro: Definition, file: FileFacts, facts: XacroFacts) -> Iterator[tuple[str, Diagnostic]]:
+    def _check_macro(self, macro: Definition, file: FileFacts, facts: XacroFacts) -> Iterator[tuple[str, Diagnostic]]:
         from linkwright.lint.xacro_facts import parameter_span
 
         used, blocks, is_open = _used_inside(macro.element, file)

@@ -141,7 +141,7 @@ class _ReaderCode:
     def _nested(self, kind: FieldType, target: str) -> None:
         structure = LIBRARY.structure(kind.base)
         if facts(structure).leaves > MOST_INLINE or self._loops >= DEEPEST_LOOP:
-            self._move_on()
+            self._write_position()
             part = _compile_part(structure, self._class_of, self._order)
             self._line(f"{target}, p = {self._given(part, 'R')}(d, p, e)")
             self.place = ANYWHERE
@@ -181,7 +181,7 @@ class _ReaderCode:
             self._line(f"{target} = {data}{native}")
             self._skip(size * primitive.size)
         elif primitive is not None and primitive.python in (bool, bytes):
-            self._move_on()
+            self._write_position()
             self._small_values(primitive, str(size), target)
         else:
             self._repeated(field, target, str(size))
@@ -238,7 +238,7 @@ class _ReaderCode:
         At the start of the loop, the code relies only on an alignment that holds in every iteration.
         """
         one = FieldType(field.type.base, field.type.string_bound)
-        self._move_on()
+        self._write_position()
         values, value = f"l{next(self._names)}", f"x{next(self._names)}"
         self._line(f"{target} = {values} = []")
         before = self.place
@@ -247,7 +247,7 @@ class _ReaderCode:
             self.place = before
             with self._loop(length):
                 self._one(field.name, one, value)
-                self._move_on()
+                self._write_position()
                 self._line(f"{values}.append({value})")
             met = before.met(self.place)
             if met == before:
@@ -265,7 +265,7 @@ class _ReaderCode:
         """
         name = f"n{next(self._names)}"
         self._primitive("I", 4, name)
-        self._move_on()
+        self._write_position()
         return name
 
     def _primitive(self, code: str, size: int, target: str) -> None:
@@ -313,7 +313,7 @@ class _ReaderCode:
     def _here(self) -> str:
         return "p" if self._known is None else str(self._known)
 
-    def _move_on(self) -> None:
+    def _write_position(self) -> None:
         """End the run. In the following code, only `p` holds the position."""
         self.end_run()
         if self._known is not None:

@@ -43,11 +43,11 @@ def type_hash(interface: Any) -> str:
         InterfaceNotFoundError: there is no interface with this name.
     """
     name = interface if isinstance(interface, str) else interface.TYPE_NAME
-    return _hash(LIBRARY.definition(name).type_name)
+    return _hash_by_name(LIBRARY.definition(name).type_name)
 
 
 @cache
-def _hash(type_name: str) -> str:
+def _hash_by_name(type_name: str) -> str:
     return hash_of(type_description(LIBRARY.definition(type_name)))
 
 

@@ -69,10 +69,10 @@ def parse_idl(source: SourceText, type_name: str, known: KnownMessages) -> Defin
     """
     reader = _Reader(source, known)
     reader.definitions(())
-    return _assembled(reader, source, type_name)
+    return _assemble(reader, source, type_name)
 
 
-def _assembled(reader: _Reader, source: SourceText, type_name: str) -> Definition:
+def _assemble(reader: _Reader, source: SourceText, type_name: str) -> Definition:
     _, kind, _ = type_name.split("/")
     parts: list[Structure] = []
     for suffix in SECTIONS[kind]:

@@ -140,7 +140,7 @@ class Library:
     def _look_up(self, text: str, kinds: tuple[str, ...]) -> Definition:
         name = split_name(text)
         if name is None:
-            raise InterfaceNotFoundError(_not_a_name(text))
+            raise InterfaceNotFoundError(_invalid_name_diagnostic(text))
         for kind in (name.kind,) if name.kind else kinds:
             if kind in kinds:
                 full = f"{name.package}/{kind}/{name.name}"
@@ -208,7 +208,7 @@ class Library:
             way = (*above, structure.type_name)
             for reference in dict.fromkeys(structure.references):
                 if reference in way:
-                    raise DefinitionError(_recursive(source, (*way[way.index(reference) :], reference)))
+                    raise DefinitionError(_recursion_diagnostic(source, (*way[way.index(reference) :], reference)))
                 inner = self.definition(reference)
                 inner_source = self._sources[reference]
                 if inner_source.name[:1] != "<":
@@ -334,7 +334,7 @@ def _read(path: Path) -> SourceText:
         ) from None
 
 
-def _not_a_name(text: str) -> Diagnostic:
+def _invalid_name_diagnostic(text: str) -> Diagnostic:
     hint = phrase("write it as 'package/kind/Name', such as 'sensor_msgs/msg/JointState'")
     guess = re.sub(r"\.|::", "/", text)
     if guess != text and split_name(guess):
@@ -353,7 +353,7 @@ def _span_of(source: SourceText, reference: str, owner: str) -> Span:
     return source.span(*match.span(1)) if match else source.span(0)
 
 
-def _recursive(source: SourceText, way: tuple[str, ...]) -> Diagnostic:
+def _recursion_diagnostic(source: SourceText, way: tuple[str, ...]) -> Diagnostic:
     span = _span_of(source, way[-1], way[-2])
     inside = way[0] if len(way) == 2 else f"{way[0]} by way of " + ", ".join(way[1:-1])
     return Diagnostic(

@@ -92,7 +92,7 @@ class Rule:
     def allowed(self, shape: Shape, points: Points, velocity: Velocity) -> Velocity | None:
         """Return the permitted velocity, or None if the zone does not restrict the requested one."""
         if self.action is Action.APPROACH:
-            seconds = self._seconds_left(shape, points, velocity)
+            seconds = self._time_to_collision(shape, points, velocity)
             return None if seconds is None else _scaled(velocity, seconds / self.time_before_collision)
         if self.action is Action.NOTHING or np.count_nonzero(shape.holds(points)) < self.min_points:
             return None
@@ -108,7 +108,7 @@ class Rule:
         about = self.angular_limit / abs(velocity.yaw) if velocity.yaw else 1.0
         return min(max(min(along, about), 0.0), 1.0)
 
-    def _seconds_left(self, shape: Shape, points: Points, velocity: Velocity) -> float | None:
+    def _time_to_collision(self, shape: Shape, points: Points, velocity: Velocity) -> float | None:
         """Return the seconds until enough points are inside the shape at this velocity.
 
         Returns None if that does not happen within `time_before_collision`.

@@ -33,7 +33,7 @@ def circle(radius: float) -> Footprint:
     return corners
 
 
-def read_footprint(text: str) -> Footprint:
+def parse_footprint(text: str) -> Footprint:
     """Parse a footprint parameter, such as ``[[0.2, 0.1], [0.2, -0.1], [-0.2, 0.0]]``.
 
     Raises:

@@ -178,7 +178,7 @@ class PersistentLayer(Layer):
             self.seen.cells[window.cells] = UNKNOWN
         self._extra = Window.of(self.seen)
 
-    def pop_extra(self) -> Window:
+    def pop_extra_window(self) -> Window:
         """Return the window changed by resizing or clearing since the last call."""
         extra, self._extra = self._extra, Window()
         return extra

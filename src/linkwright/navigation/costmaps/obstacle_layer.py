@@ -74,7 +74,7 @@ class ObstacleLayer(PersistentLayer):
     def changed(self, window: Window, moment: UpdateContext, grid: Grid) -> Window:
         """Apply the valid observations, and return the window that must be rewritten."""
         self._forgotten = False
-        window = window.joined(self.pop_extra())
+        window = window.joined(self.pop_extra_window())
         seen = [
             (observation, buffer.source)
             for buffer in self.buffers
@@ -106,7 +106,7 @@ class ObstacleLayer(PersistentLayer):
         """Free the cells on the rays to the points, and return the window around these cells."""
         start, ends, _ = ray_ends(observation, grid)
         cells, _ = cells_on_lines(start, ends)
-        cells = cells[grid.has(cells) & _far_enough(cells, start, observation, grid)]
+        cells = cells[grid.has(cells) & _beyond_min_range(cells, start, observation, grid)]
         self.seen.cells[cells[:, 0], cells[:, 1]] = FREE
         return Window.around(cells, grid)
 
@@ -150,7 +150,7 @@ def ray_ends(observation: Observation, grid: Grid) -> tuple[Cells, Cells, NDArra
     return start, cells[chosen], ends[chosen, 2]
 
 
-def _far_enough(cells: Cells, start: Cells, observation: Observation, grid: Grid) -> NDArray[np.bool_]:
+def _beyond_min_range(cells: Cells, start: Cells, observation: Observation, grid: Grid) -> NDArray[np.bool_]:
     """Return a mask of the cells beyond the minimum range for clearing."""
     least = observation.source.raytrace_min_range / grid.resolution
     offsets = cells - start

@@ -18,10 +18,10 @@ from linkwright.navigation.costmaps.layer import PersistentLayer, UpdateContext,
 from linkwright.navigation.grids.grid import Grid
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
-_CERTAIN: Final = 254.0
+_MAX_PROBABILITY: Final = 254.0
 _EVEN: Final = 127
 """The probability of an unknown cell, from 0 to 254."""
-_HIT: Final = 233
+_HIT_PROBABILITY: Final = 233
 """The probability of a cell at the middle of a reading, from 0 to 254."""
 _LEAST: Final = 0.02
 """Likelihoods count as no less, and no nearer to 1, so that nothing is certain for ever."""
@@ -104,7 +104,7 @@ class RangeLayer(PersistentLayer):
 
     def changed(self, window: Window, moment: UpdateContext, grid: Grid) -> Window:
         """Apply the queued readings, and return the window that must be rewritten."""
-        window = window.joined(self.pop_extra())
+        window = window.joined(self.pop_extra_window())
         while self._readings:
             window = window.joined(self._learn(self._readings.popleft(), grid))
         return window
@@ -112,8 +112,8 @@ class RangeLayer(PersistentLayer):
     def write(self, grid: Grid, window: Window, moment: UpdateContext) -> None:
         """Mark cells above the upper threshold, and free unknown cells below the lower threshold."""
         likely, below = self.seen.cells[window.cells], grid.cells[window.cells]
-        below[(likely < self.settings.clear_threshold * _CERTAIN) & (below == UNKNOWN)] = FREE
-        below[likely > self.settings.mark_threshold * _CERTAIN] = LETHAL
+        below[(likely < self.settings.clear_threshold * _MAX_PROBABILITY) & (below == UNKNOWN)] = FREE
+        below[likely > self.settings.mark_threshold * _MAX_PROBABILITY] = LETHAL
 
     def _learn(self, reading: Reading, grid: Grid) -> Window:
         """Update the probabilities by Bayes' rule, and return the window that changed."""
@@ -133,12 +133,12 @@ class RangeLayer(PersistentLayer):
             )
             target = grid.cells_of(np.array(hit))
             if grid.has(target):
-                self.seen.cells[target[0], target[1]] = _HIT
+                self.seen.cells[target[0], target[1]] = _HIT_PROBABILITY
         measured = self._likelihood(distance, angle / half, reading, grid.resolution)
         known = self.seen.cells[window.cells]
-        prior = np.clip(known / _CERTAIN, _LEAST, 1.0 - _LEAST)
+        prior = np.clip(known / _MAX_PROBABILITY, _LEAST, 1.0 - _LEAST)
         occupied, free = measured * prior, (1.0 - measured) * (1.0 - prior)
-        posterior = np.round(_CERTAIN * occupied / (occupied + free))
+        posterior = np.round(_MAX_PROBABILITY * occupied / (occupied + free))
         self.seen.cells[window.cells] = np.where(angle <= half, posterior, known)
         return window
 

@@ -62,7 +62,7 @@ class Estimator:
         if self._queue:
             restored = 0
             if history_ns is not None and kalman.initialized and self._queue[0][0] < kalman.time_ns:
-                restored = self._go_back(self._queue[0][0])
+                restored = self._rewind(self._queue[0][0])
             self._use(now_ns, restored)
         elif kalman.initialized and now_ns - kalman.time_ns >= self._timing.sensor_timeout_ns:
             predict = True
@@ -84,7 +84,7 @@ class Estimator:
                 if not self._queue or self._queue[0][0] != kalman.time_ns:
                     self._states.append(kalman.snapshot())
 
-    def _go_back(self, time_ns: int) -> int:
+    def _rewind(self, time_ns: int) -> int:
         """Restore the last state before a time, and queue the later measurements again.
 
         Returns the number of measurements that were queued again.

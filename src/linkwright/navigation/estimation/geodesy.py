@@ -48,7 +48,7 @@ class Zone(NamedTuple):
         return radians(6.0 * self.number - 183.0)
 
 
-def zone_of(latitude: float, longitude: float) -> Zone:
+def zone_from_degrees(latitude: float, longitude: float) -> Zone:
     """Return the UTM zone of a position in degrees, including the wider zones of Norway and Svalbard."""
     longitude = (longitude + 180.0) % 360.0 - 180.0
     number = floor((longitude + 180.0) / 6.0) + 1
@@ -59,7 +59,7 @@ def zone_of(latitude: float, longitude: float) -> Zone:
     return Zone(number, latitude >= 0.0)
 
 
-def utm_of(latitude: float, longitude: float, zone: Zone) -> tuple[float, float]:
+def utm_from_degrees(latitude: float, longitude: float, zone: Zone) -> tuple[float, float]:
     """Convert a position in degrees to easting and northing in metres."""
     tau = tan(radians(latitude))
     sigma = sinh(_ECCENTRICITY * atanh(_ECCENTRICITY * tau / hypot(1.0, tau)))
@@ -75,10 +75,10 @@ def utm_of(latitude: float, longitude: float, zone: Zone) -> tuple[float, float]
     return _FALSE_EASTING + _SCALE * _RECTIFYING * east, false_northing + _SCALE * _RECTIFYING * north
 
 
-def degrees_of_utm(easting: float, northing: float, zone: Zone) -> tuple[float, float]:
+def degrees_from_utm(easting: float, northing: float, zone: Zone) -> tuple[float, float]:
     """Convert easting and northing in metres to latitude and longitude in degrees.
 
-    This is the inverse of `utm_of`.
+    This is the inverse of `utm_from_degrees`.
     """
     north = (northing - (0.0 if zone.northern else _FALSE_NORTHING)) / (_SCALE * _RECTIFYING)
     east = (easting - _FALSE_EASTING) / (_SCALE * _RECTIFYING)
@@ -119,7 +119,7 @@ class TangentPlane:
     longitude: float
     altitude: float
 
-    def point_of(self, latitude: float, longitude: float, altitude: float) -> Vector3:
+    def point_from_geodetic(self, latitude: float, longitude: float, altitude: float) -> Vector3:
         """Convert latitude and longitude in degrees and altitude in metres to a point in metres."""
         x, y, z = _geocentric(latitude, longitude, altitude)
         ox, oy, oz = _geocentric(self.latitude, self.longitude, self.altitude)

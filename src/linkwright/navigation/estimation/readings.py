@@ -122,7 +122,7 @@ class PoseReader:
             *_rotated_components(self.used, known, turn, POSITION),
             *_rotated_components(self.used, known, turn, ANGLES),
         )
-        both = _twice(turn)
+        both = _block_diagonal(turn)
         turned = both @ covariance @ both.T
         if self.differential:
             before, self._last = self._last, (pose, turned, time_ns)
@@ -134,7 +134,7 @@ class PoseReader:
                 self._first = pose
             pose = compose(invert(self._first), pose)
         pose = compose(sensor, pose)
-        reading = _empty()
+        reading = _empty_reading()
         reading.values[POSITION] = pose[:3]
         reading.values[ANGLES] = rpy_from_quaternion(pose[3:])
         reading.covariance[POSE, POSE] = turned
@@ -145,7 +145,7 @@ class PoseReader:
         pose, covariance, time_ns = self._last
         seconds = (time_ns - before[2]) / 1e9
         moved = compose((0.0, 0.0, 0.0, *sensor[3:]), compose(invert(before[0]), pose))
-        reading = _empty()
+        reading = _empty_reading()
         reading.values[VELOCITY] = np.array(moved[:3]) / seconds
         reading.values[RATES] = np.array(rpy_from_quaternion(moved[3:])) / seconds
         reading.covariance[TWIST, TWIST] = (covariance + before[1]) * seconds
@@ -167,10 +167,10 @@ def read_twist(
         two_d: whether the body moves on a plane.
     """
     turn = rotation_matrix(mounting[3:])
-    both = _twice(turn)
+    both = _block_diagonal(turn)
     known = _finite(_finite(used, VELOCITY, linear), RATES, angular)
     linear, angular = _numbers(linear), _numbers(angular)
-    reading = _empty()
+    reading = _empty_reading()
     x, y, z = mounting[:3]
     roll, pitch, yaw = rates.tolist()
     reading.values[VELOCITY] = turn @ linear + (y * yaw - z * pitch, z * roll - x * yaw, x * pitch - y * roll)
@@ -199,13 +199,13 @@ def read_acceleration(
     """
     turn = rotation_matrix(mounting[3:])
     known = _finite(used, ACCELERATION, acceleration)
-    reading = _empty()
+    reading = _empty_reading()
     reading.values[ACCELERATION] = turn @ _numbers(acceleration)
     reading.covariance[ACCELERATION, ACCELERATION] = turn @ covariance @ turn.T
     return _finished(reading, (*([False] * 12), *_rotated_components(used, known, turn, ACCELERATION)), two_d=two_d)
 
 
-def without_gravity(acceleration: Vector, orientation: Quaternion, gravity: float = GRAVITY) -> Vector:
+def subtract_gravity(acceleration: Vector, orientation: Quaternion, gravity: float = GRAVITY) -> Vector:
     """Subtract gravity from a measured acceleration.
 
     Args:
@@ -217,7 +217,7 @@ def without_gravity(acceleration: Vector, orientation: Quaternion, gravity: floa
     return rest
 
 
-def _empty() -> Reading:
+def _empty_reading() -> Reading:
     return Reading(np.zeros(SIZE), np.zeros((SIZE, SIZE)), ())
 
 
@@ -272,7 +272,7 @@ def _affected_components(flags: Used, turn: Matrix, part: slice) -> NDArray[np.b
     return touched
 
 
-def _twice(turn: Matrix) -> Matrix:
+def _block_diagonal(turn: Matrix) -> Matrix:
     both = np.zeros((6, 6))
     both[:3, :3] = both[3:, 3:] = turn
     return both

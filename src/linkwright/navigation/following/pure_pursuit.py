@@ -75,7 +75,7 @@ class RegulatedPurePursuit(Follower):
         """Return the velocity for the next cycle; see `Follower.velocity`."""
         parameters = self.parameters
         seen = to_robot_frame(situation.pose, situation.path[:, :2])
-        cusp = _distance_to_cusp(seen) if parameters.allow_reversing else len(seen)
+        cusp = _cusp_index(seen) if parameters.allow_reversing else len(seen)
         seen = seen[: cusp + 1]
         lookahead = self._lookahead(situation.velocity.x)
         carrot = carrot_on(seen, lookahead)
@@ -113,7 +113,7 @@ class RegulatedPurePursuit(Follower):
     def _turn(self, angle: float, situation: Situation) -> Velocity:
         parameters = self.parameters
         return Velocity(
-            yaw=turning_speed(
+            yaw=rotation_speed(
                 angle,
                 situation.velocity.yaw,
                 situation.period,
@@ -211,7 +211,7 @@ def speed_in_curve(speed: float, curvature: float, least_radius: float) -> float
     return speed * min(1.0, float(radius) / least_radius) if least_radius > 0.0 else speed
 
 
-def turning_speed(angle: float, now: float, period: float, highest: float, acceleration: float) -> float:
+def rotation_speed(angle: float, now: float, period: float, highest: float, acceleration: float) -> float:
     """Return an angular velocity from which a rotation by an angle can be stopped in time.
 
     The velocity is in rad/s.
@@ -246,7 +246,7 @@ def is_free(situation: Situation, command: Velocity, seconds: float) -> bool:
     return not bool(np.any(costs == LETHAL))
 
 
-def _distance_to_cusp(seen: NDArray[np.float64]) -> int:
+def _cusp_index(seen: NDArray[np.float64]) -> int:
     """Return the index of the first point at which the path reverses, or of the last point."""
     steps = np.diff(seen, axis=0)
     back = np.flatnonzero((steps[:-1] * steps[1:]).sum(axis=1) < 0.0)

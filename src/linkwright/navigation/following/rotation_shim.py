@@ -18,7 +18,7 @@ from linkwright.navigation.following.follower import (
     lengths_along,
     to_robot_frame,
 )
-from linkwright.navigation.following.pure_pursuit import is_free, turning_speed
+from linkwright.navigation.following.pure_pursuit import is_free, rotation_speed
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,7 +71,7 @@ class RotationShim(Follower):
         if not self._turns:
             return self._primary.velocity(situation)
         command = Velocity(
-            yaw=turning_speed(
+            yaw=rotation_speed(
                 angle,
                 situation.velocity.yaw,
                 situation.period,

@@ -26,7 +26,7 @@ from linkwright.navigation.following.follower import (
     to_robot_frame,
     wrapped,
 )
-from linkwright.navigation.following.pure_pursuit import is_free, turning_speed
+from linkwright.navigation.following.pure_pursuit import is_free, rotation_speed
 
 _LEAST, _MOST, _CHANGE = Velocity(0.0, 0.0, -1.0), Velocity(0.26, 0.0, 1.0), Velocity(2.5, 0.0, 3.2)
 
@@ -120,9 +120,9 @@ class SamplingFollower(Follower):
         """
         limits, now = self.parameters.limits, situation.velocity
         wanted = Velocity(
-            _braked(now.x, limits.deceleration.x, situation.period),
-            _braked(now.y, limits.deceleration.y, situation.period),
-            turning_speed(angle, now.yaw, situation.period, limits.most.yaw, limits.acceleration.yaw),
+            _brake(now.x, limits.deceleration.x, situation.period),
+            _brake(now.y, limits.deceleration.y, situation.period),
+            rotation_speed(angle, now.yaw, situation.period, limits.most.yaw, limits.acceleration.yaw),
         )
         turning = abs(wanted.yaw)
         seconds = min(self.parameters.seconds, abs(angle) / turning) if turning > 0.0 else 0.0
@@ -208,7 +208,7 @@ class SamplingFollower(Follower):
         return judged
 
 
-def _braked(speed: float, deceleration: float, period: float) -> float:
+def _brake(speed: float, deceleration: float, period: float) -> float:
     """Return the speed after one cycle of braking, in m/s."""
     return float(np.sign(speed)) * max(0.0, abs(speed) - deceleration * period)
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 Poses = NDArray[np.float64]
 """x and y in metres and yaw in radians, of shape (n, 3)."""
 
-_STANDS_STILL = 0.01
+_MIN_TRANSLATION = 0.01
 """Metres up to which a motion has no direction."""
 
 
@@ -60,7 +60,7 @@ def differential(
     """Move particles in place by the differential model: rotation, translation, rotation."""
     x, y, turn = after[0] - before[0], after[1] - before[1], wrap_angle(after[2] - before[2])
     drive = hypot(x, y)
-    first = 0.0 if drive < _STANDS_STILL else wrap_angle(atan2(y, x) - before[2])
+    first = 0.0 if drive < _MIN_TRANSLATION else wrap_angle(atan2(y, x) - before[2])
     second = wrap_angle(turn - first)
     # Driving backward must not count as a half turn.
     first_size, second_size = (min(abs(rotation), abs(wrap_angle(rotation - pi))) for rotation in (first, second))

@@ -80,7 +80,7 @@ class ParticleFilter:
         self.weights = np.full(len(particles), 1.0 / len(particles))
         self._slow = self._fast = 0.0
 
-    def begin_at(self, pose: tuple[float, float, float], covariance: NDArray[np.float64]) -> None:
+    def draw_around(self, pose: tuple[float, float, float], covariance: NDArray[np.float64]) -> None:
         """Draw the maximum number of particles around a pose, with a covariance of shape (3, 3)."""
         count = self.settings.max_particles
         values, axes = np.linalg.eigh((covariance + covariance.T) / 2.0)

@@ -20,7 +20,7 @@ from linkwright.navigation.localization.motion_models import Poses
 
 Likelihoods = NDArray[np.float64]
 MODELS = ("likelihood_field", "likelihood_field_prob", "beam")
-_FITS = 0.15
+_FIT_DISTANCE = 0.15
 """The distance from obstacles of the map, in metres, up to which the end of a beam fits."""
 
 
@@ -113,7 +113,7 @@ class MapLikelihoods:
         if not len(hits):
             return None
         distances = self._distances.take(self._cells(np.array([pose]), hits))
-        return float((distances <= _FITS).mean())
+        return float((distances <= _FIT_DISTANCE).mean())
 
     def random_poses(self, count: int, random: np.random.Generator) -> Poses:
         """Return random poses that are uniformly distributed in the free cells, of shape (count, 3).

@@ -26,7 +26,7 @@ def _unheard(_line: str) -> None:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SavedAs:
+class MapSaveSettings:
     """The settings with which a map is saved.
 
     Attributes:
@@ -56,7 +56,7 @@ def load_map(path: str | Path) -> Grid:
     return Grid(cells=cells, resolution=map_yaml.resolution, x=x, y=y, yaw=yaw)
 
 
-def save_map(grid: Grid, saved: SavedAs, warn: Callable[[str], object] = _unheard) -> tuple[Path, Path]:
+def save_map(grid: Grid, saved: MapSaveSettings, warn: Callable[[str], object] = _unheard) -> tuple[Path, Path]:
     """Save a grid as a map.
 
     Args:
@@ -103,7 +103,7 @@ def save_map(grid: Grid, saved: SavedAs, warn: Callable[[str], object] = _unhear
     return image, text
 
 
-def _check(saved: SavedAs) -> None:
+def _check(saved: MapSaveSettings) -> None:
     problem = None
     if saved.occupied_thresh > 1.0:
         problem = phrase("Threshold_occupied must be 1.0 or less")
@@ -124,7 +124,7 @@ def _write(path: Path, data: bytes) -> None:
         raise LinkwrightError(Diagnostic("NAV206", message)) from None
 
 
-def _yaml(grid: Grid, saved: SavedAs, image: str) -> str:
+def _yaml(grid: Grid, saved: MapSaveSettings, image: str) -> str:
     origin = ", ".join(_number(number) for number in (grid.x, grid.y, grid.yaw))
     return (
         f"image: {image}\nmode: {saved.mode.value}\nresolution: {_number(grid.resolution)}\norigin: [{origin}]\n"

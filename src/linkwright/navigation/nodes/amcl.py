@@ -33,7 +33,7 @@ _MOST_WAITING = 10
 _SECONDS_BETWEEN_COMPLAINTS = 5.0
 _SECONDS_OF_SILENCE = 15.0
 _UNKNOWN_COVARIANCE = np.diag((0.25, 0.25, (np.pi / 12.0) ** 2))
-_FITS_LITTLE = 0.3
+_MIN_FIT = 0.3
 """The share of beams near obstacles of the map below which a scan does not fit."""
 _MISFITS = 5
 """The number of consecutive measurements that do not match after which a warning is logged."""
@@ -73,7 +73,7 @@ class AmclNode(ManagedNode):
         settings, register = self._settings, self.register
         self._buffer = BufferCore(logger=self.get_logger().get_child("tf2"))
         listener = TransformListener(self, self)
-        register(_Listening(listener))
+        register(_ListenerPart(listener))
         self._clouds = register(
             self.create_publisher(get_message("nav2_msgs/msg/ParticleCloud"), "particle_cloud", SENSOR_DATA_QOS)
         )
@@ -93,7 +93,7 @@ class AmclNode(ManagedNode):
     def activate(self) -> None:
         """Start localizing, from the initial pose if one is set."""
         self._heard_ns = self.get_clock().now().nanoseconds
-        self._silence = self.create_timer(_SECONDS_OF_SILENCE, self._look_for_scans)
+        self._silence = self.create_timer(_SECONDS_OF_SILENCE, self._check_scan_timeout)
         if self._settings.initial_pose is not None:
             self._set_pose(self._settings.initial_pose, np.zeros((3, 3)))
         self._active = True
@@ -145,7 +145,7 @@ class AmclNode(ManagedNode):
         self._waiting.append(message)
         self._work()
 
-    def _look_for_scans(self) -> None:
+    def _check_scan_timeout(self) -> None:
         silent = (self.get_clock().now().nanoseconds - self._heard_ns) / 1e9
         if silent >= _SECONDS_OF_SILENCE:
             self.get_logger().warning(
@@ -218,7 +218,7 @@ class AmclNode(ManagedNode):
     def _begin_at(self, pose: Pose | None, covariance: NDArray[np.float64]) -> None:
         """Initialise the particles around a pose, or around the map's origin if the pose is None."""
         self._pose, self._covariance = pose, covariance
-        self._filter.begin_at(pose or (0.0, 0.0, 0.0), covariance)
+        self._filter.draw_around(pose or (0.0, 0.0, 0.0), covariance)
         self._reset()
 
     def _reset(self) -> None:
@@ -262,7 +262,7 @@ class AmclNode(ManagedNode):
         fit = self._map.fit(estimate.pose, beams)
         if fit is None:
             return
-        self._misfits = 0 if fit > _FITS_LITTLE else self._misfits + 1
+        self._misfits = 0 if fit > _MIN_FIT else self._misfits + 1
         if self._misfits >= _MISFITS:
             self.get_logger().warning(
                 f"only {fit:.0%} of the beams end near something on the map: the robot is elsewhere, or the map is "
@@ -355,7 +355,7 @@ class AmclNode(ManagedNode):
         return response
 
 
-class _Listening:
+class _ListenerPart:
     """A transform listener as a part that is destroyed when the node is cleaned up."""
 
     def __init__(self, listener: TransformListener) -> None:

@@ -35,7 +35,7 @@ from linkwright.navigation.following.follower import STILL, Pose, Velocity
 from linkwright.navigation.nodes.costmap_reading import costmap_of
 from linkwright.navigation.nodes.goals import GoalServer
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
-from linkwright.navigation.nodes.plugins import texts_of, type_of
+from linkwright.navigation.nodes.plugins import string_list, type_of
 from linkwright.nodes.frame_poses import FramePoses
 from linkwright.nodes.settings import bad_value, positive
 from linkwright.nodes.velocity_topic import VelocityTopic, velocity_types
@@ -122,9 +122,9 @@ class BehaviorNode(ManagedNode):
         self.register(self.create_subscription(polygon, self._topic("footprint"), self._on_footprint, _DEPTH))
         asked = self._value("cmd_vel_teleop")
         for kind in velocity_types(self, asked, self._stamped):
-            self.register(self.create_subscription(kind, asked, self._on_asked, _DEPTH))
+            self.register(self.create_subscription(kind, asked, self._on_teleop_velocity, _DEPTH))
         self._output = VelocityTopic(self, "cmd_vel", self._stamped)
-        for plugin in texts_of(self, "behavior_plugins", list(_TYPES)):
+        for plugin in string_list(self, "behavior_plugins", list(_TYPES)):
             kind = type_of(self, plugin, {name: class_name for name, (class_name, _) in _TYPES.items()})
             known = {class_name: (name, action) for name, (class_name, action) in _TYPES.items()}
             if kind not in known:
@@ -217,7 +217,7 @@ class BehaviorNode(ManagedNode):
         if pose is None:
             self._finish(server, name, "TF_ERROR", "the pose of the robot is not known", elapsed)
             return
-        if name != "wait" and (reason := self._blindness_reason()):
+        if name != "wait" and (reason := self._missing_data_reason()):
             self._finish(server, name, "UNKNOWN", reason, elapsed)
             return
         step = behavior.step(pose, elapsed, self._is_free)
@@ -246,7 +246,7 @@ class BehaviorNode(ManagedNode):
 
     # --- costmap, pose and requests -----------------------------------------------------------------------------------
 
-    def _blindness_reason(self) -> str:
+    def _missing_data_reason(self) -> str:
         """Return the reason why obstacles are unknown, or an empty string if they are known."""
         if self._costmap is None or self._footprint is None:
             return "no costmap has come yet"
@@ -285,7 +285,7 @@ class BehaviorNode(ManagedNode):
         footprint: Footprint = (corners - found[:2]) @ np.array([[c, -s], [s, c]])
         self._footprint = footprint
 
-    def _on_asked(self, message: Any) -> None:
+    def _on_teleop_velocity(self, message: Any) -> None:
         twist = message.twist if hasattr(message, "twist") else message
         self._asked = Velocity(twist.linear.x, twist.linear.y, twist.angular.z)
 

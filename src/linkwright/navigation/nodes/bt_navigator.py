@@ -26,7 +26,7 @@ from linkwright.navigation.costmaps.costmap import INSCRIBED, LETHAL, Costmap
 from linkwright.navigation.nodes.costmap_reading import costmap_of
 from linkwright.navigation.nodes.goals import GoalServer
 from linkwright.navigation.nodes.managed import ManagedServer
-from linkwright.navigation.nodes.plugins import texts_of
+from linkwright.navigation.nodes.plugins import string_list
 from linkwright.navigation.nodes.steps import SentGoal, Step, StepError, StepNode
 
 _DEPTH = 10
@@ -52,7 +52,7 @@ class NavigatorNode(StepNode):
         for name, value in _PARAMETERS.items():
             declare(name, value)
         for name in _LISTS:
-            texts_of(self, name, [])
+            string_list(self, name, [])
         self._buffer = BufferCore(logger=self.get_logger().get_child("tf2"))
         TransformListener(self._buffer, self)
         self._costmap: Costmap | None = None
@@ -83,7 +83,7 @@ class NavigatorNode(StepNode):
         }
         for which in ("pose", "poses"):
             given = self._value(f"default_nav_{'to_pose' if which == 'pose' else 'through_poses'}_bt_xml")
-            if given and not _is_usual(given):
+            if given and not _is_default_tree(given):
                 self._log_ignored_tree(given)
 
     def activate(self) -> None:
@@ -106,7 +106,7 @@ class NavigatorNode(StepNode):
         if not poses:
             self.get_logger().error("the goal has no poses, so it is rejected")
             return False
-        if goal.behavior_tree and not _is_usual(goal.behavior_tree):
+        if goal.behavior_tree and not _is_default_tree(goal.behavior_tree):
             self._log_ignored_tree(goal.behavior_tree)
         return True
 
@@ -180,7 +180,7 @@ class NavigatorNode(StepNode):
     def _plan_and_drive(self, which: str) -> Step:
         """Plan a path and follow it, with periodic replanning."""
         path = yield from self._planned(which)
-        driving = SentGoal(self._clients["follow_path"], self._to_follow(path))
+        driving = SentGoal(self._clients["follow_path"], self._follow_path_goal(path))
         cleared = False
         planned_ns = self.now_ns()
         try:
@@ -193,14 +193,14 @@ class NavigatorNode(StepNode):
                         raise StepError("UNKNOWN", driving.reason("the controller failed"))
                     cleared = True
                     yield from self._clear("local")
-                    driving = SentGoal(self._clients["follow_path"], self._to_follow(path))
+                    driving = SentGoal(self._clients["follow_path"], self._follow_path_goal(path))
                 elif driving.has_succeeded:
                     return
                 elif self.now_ns() - planned_ns > _REPLANNING[which] * 1e9:
                     path = yield from self._planned(which)
                     planned_ns = self.now_ns()
                     if not driving.is_over:
-                        driving = SentGoal(self._clients["follow_path"], self._to_follow(path))
+                        driving = SentGoal(self._clients["follow_path"], self._follow_path_goal(path))
         finally:
             driving.cancel()
 
@@ -256,7 +256,7 @@ class NavigatorNode(StepNode):
                 return
             self._poses = self._poses[1:]
 
-    def _to_follow(self, path: Any) -> Any:
+    def _follow_path_goal(self, path: Any) -> Any:
         return get_action("nav2_msgs/action/FollowPath").Goal(path=path, controller_id="FollowPath")
 
     def _clear_costmaps(self) -> Step:
@@ -329,7 +329,7 @@ class BtNavigator(ManagedServer):
     NODE = NavigatorNode
 
 
-def _is_usual(path: str) -> bool:
+def _is_default_tree(path: str) -> bool:
     """Return whether a behaviour tree has the file name of one of nav2's defaults."""
     return path.rpartition("/")[2] in _USUAL_TREES
 

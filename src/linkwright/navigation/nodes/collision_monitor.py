@@ -25,14 +25,14 @@ from linkwright.navigation.following.follower import STILL, Velocity
 from linkwright.navigation.nodes.collision_sources import Source
 from linkwright.navigation.nodes.collision_zones import Zone
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
-from linkwright.navigation.nodes.plugins import texts_of
+from linkwright.navigation.nodes.plugins import string_list
 from linkwright.nodes.parameter_tables import ParameterTable
 from linkwright.nodes.velocity_topic import VelocityTopic, velocity_types
 
 _DEPTH = 10
 _NO_SOURCE = "invalid source"
 """nav2's name of the zone when a sensor is silent."""
-_DONE = {
+_ACTION_MESSAGES = {
     Action.STOP: "Robot to stop due to {}",
     Action.SLOWDOWN: "Robot to slow down due to {}",
     Action.APPROACH: "Robot to slow down while it approaches what is in the way of {}",
@@ -84,9 +84,9 @@ class MonitorNode(ManagedNode):
         """
         given = self._table.values
         base, fixed = given.base_frame_id, given.odom_frame_id if given.base_shift_correction else None
-        for name in texts_of(self, "observation_sources", []):
+        for name in string_list(self, "observation_sources", []):
             self._sources.append(self.register(Source(self, name, self._transforms, base, fixed)))
-        for name in texts_of(self, "polygons", []):
+        for name in string_list(self, "polygons", []):
             self._zones.append(self.register(Zone(self, name, self._transforms, base)))
         topic = given.state_topic
         if topic:
@@ -144,7 +144,7 @@ class MonitorNode(ManagedNode):
             if points is None:
                 return Verdict(STILL, Action.STOP, _NO_SOURCE)
             seen[source.name] = points
-        zones = [zone.judging(velocity, seen) for zone in self._zones]
+        zones = [zone.input_at_velocity(velocity, seen) for zone in self._zones]
         return limit_by_zones(velocity, [zone for zone in zones if zone is not None])
 
     def _publish(self, velocity: Velocity) -> None:
@@ -171,7 +171,7 @@ class MonitorNode(ManagedNode):
             self._verdict = Verdict(STILL)
 
     def _publish_state(self, verdict: Verdict) -> None:
-        self.get_logger().info(_DONE[verdict.action].format(verdict.zone))
+        self.get_logger().info(_ACTION_MESSAGES[verdict.action].format(verdict.zone))
         if self._state is not None:
             state = get_message("nav2_msgs/msg/CollisionMonitorState")
             self._state.publish(state(action_type=int(verdict.action), polygon_name=verdict.zone))

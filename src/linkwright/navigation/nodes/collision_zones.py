@@ -12,9 +12,9 @@ from linkwright.graph import Node, ParameterDescriptor, TransformException
 from linkwright.graph.transforms.core import BufferCore
 from linkwright.messages import get_message
 from linkwright.navigation.behaviors.zones import Action, Circle, Outline, Points, Rule, Shape, SpeedRange
-from linkwright.navigation.costmaps.footprints import BadFootprintError, Footprint, read_footprint
+from linkwright.navigation.costmaps.footprints import BadFootprintError, Footprint, parse_footprint
 from linkwright.navigation.following.follower import Velocity
-from linkwright.navigation.nodes.plugins import texts_of, value_of
+from linkwright.navigation.nodes.plugins import string_list, value_of
 from linkwright.nodes.settings import bad_value
 
 _ACTIONS = {
@@ -51,12 +51,12 @@ class Zone:
         self._ranges: list[SpeedRange] = []
         self._value("enabled", True)
         self.rule = self._read_rule()
-        self._sources = texts_of(node, f"{name}.sources_names", [])
+        self._sources = string_list(node, f"{name}.sources_names", [])
         kind = str(self._value("type", "polygon"))
         if kind not in _TYPES:
             raise bad_value(f"{name}.type", kind, node.get_name(), _TYPES)
         if kind == "velocity_polygon":
-            self._ranges = [self._read_range(part) for part in texts_of(node, f"{name}.velocity_polygons", [])]
+            self._ranges = [self._read_range(part) for part in string_list(node, f"{name}.velocity_polygons", [])]
         else:
             self._read_shape(kind)
         self._publisher: Any = None
@@ -69,7 +69,9 @@ class Zone:
         for part in self._parts:
             part.destroy()
 
-    def judging(self, velocity: Velocity, seen: Mapping[str, Points]) -> tuple[str, Rule, Shape, Points] | None:
+    def input_at_velocity(
+        self, velocity: Velocity, seen: Mapping[str, Points]
+    ) -> tuple[str, Rule, Shape, Points] | None:
         """Return the zone's name, rule, shape at a velocity, and the points of the zone's sensors.
 
         Returns None if the zone is disabled or has no shape yet.
@@ -179,7 +181,7 @@ class Zone:
             numbers = list(value)
             value = str([numbers[start : start + 2] for start in range(0, len(numbers), 2)])
         try:
-            return read_footprint(value)
+            return parse_footprint(value)
         except BadFootprintError:
             raise bad_value(full, value, self._node.get_name()) from None
 

@@ -24,7 +24,7 @@ from linkwright.navigation.nodes.followers import make_follower, make_goal_check
 from linkwright.navigation.nodes.goals import GoalError, GoalServer
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
 from linkwright.navigation.nodes.paths import poses_of
-from linkwright.navigation.nodes.plugins import texts_of
+from linkwright.navigation.nodes.plugins import string_list
 from linkwright.nodes.options import NodeOptions
 from linkwright.nodes.settings import positive
 from linkwright.nodes.velocity_topic import VelocityTopic
@@ -81,11 +81,11 @@ class ControllerNode(ManagedNode):
         progress = [self._old_progress] if self._old_progress else None
         self._progress = {
             checker: make_progress_checker(self, checker)
-            for checker in progress or texts_of(self, "progress_checker_plugins", ["progress_checker"])
+            for checker in progress or string_list(self, "progress_checker_plugins", ["progress_checker"])
         }
-        names = texts_of(self, "goal_checker_plugins", ["goal_checker"])
+        names = string_list(self, "goal_checker_plugins", ["goal_checker"])
         self._checkers = {name: make_goal_checker(self, name) for name in names}
-        names = texts_of(self, "controller_plugins", ["FollowPath"])
+        names = string_list(self, "controller_plugins", ["FollowPath"])
         self._followers = {name: make_follower(self, name) for name in names}
         self.costmap.trigger_configure()
         odometry, limit = get_message("nav_msgs/msg/Odometry"), get_message("nav2_msgs/msg/SpeedLimit")
@@ -217,13 +217,13 @@ class ControllerNode(ManagedNode):
         try:
             command = self._follower.velocity(situation)
         except FollowingError as error:
-            self._bear(str(error), now_ns)
+            self._tolerate_failure(str(error), now_ns)
             return
         self._good_ns = now_ns
         self._publish(command)
         goals.feedback(distance_to_goal=self._path.remaining(x, y), speed=hypot(self._measured.x, self._measured.y))
 
-    def _bear(self, reason: str, now_ns: int) -> None:
+    def _tolerate_failure(self, reason: str, now_ns: int) -> None:
         """Stop the robot when there is no valid velocity.
 
         Raises:

@@ -26,8 +26,8 @@ from linkwright.navigation.costmaps.footprints import (
     BadFootprintError,
     Footprint,
     circle,
+    parse_footprint,
     place_footprint,
-    read_footprint,
 )
 from linkwright.navigation.costmaps.layered import LayeredCostmap, Pose
 from linkwright.navigation.grids.grid import Grid
@@ -40,14 +40,14 @@ from linkwright.navigation.nodes.costmap_layers import (
 )
 from linkwright.navigation.nodes.costmap_messages import CostmapPublisher, raw_message
 from linkwright.navigation.nodes.managed import ManagedNode
-from linkwright.navigation.nodes.plugins import declare_unread, texts_of
+from linkwright.navigation.nodes.plugins import declare_unused, string_list
 from linkwright.nodes.options import NodeOptions
 from linkwright.nodes.parameter_tables import ParameterTable
 from linkwright.nodes.settings import bad_value
 
 _SECONDS_BETWEEN_COMPLAINTS = 5.0
 _LEAST_CORNERS = 3
-_OF_TF = (DEFAULT_TF_TOPIC, DEFAULT_STATIC_TF_TOPIC)
+_TF_TOPICS = (DEFAULT_TF_TOPIC, DEFAULT_STATIC_TF_TOPIC)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -99,7 +99,7 @@ class CostmapNode(ManagedNode):
         self._published_ns: int | None = None
         self.add_post_set_parameters_callback(self._follow)
         self._table = ParameterTable(self, CostmapParameters)  # Added last, so that its callback runs before `_follow`.
-        self._filters: list[str] = texts_of(self, "filters", [])
+        self._filters: list[str] = string_list(self, "filters", [])
         self.transforms = BufferCore(logger=self.get_logger().get_child("tf2"))
         TransformListener(self.transforms, self)
 
@@ -188,7 +188,7 @@ class CostmapNode(ManagedNode):
         footprint = self._read_footprint()
         self._shared = Surroundings(self, self.transforms, self.global_frame, self._on_map)
         self._leave_out_filters()
-        make_layers(self._shared, texts_of(self, "plugins", list(DEFAULT_LAYERS)))
+        make_layers(self._shared, string_list(self, "plugins", list(DEFAULT_LAYERS)))
         resolution = self._positive("resolution")
         rows, columns = (max(1, int(self._positive(name) / resolution)) for name in ("height", "width"))
         cells = np.zeros((rows, columns), np.uint8)
@@ -261,14 +261,14 @@ class CostmapNode(ManagedNode):
         if self.uses_radius:
             return circle(self._positive("robot_radius"))
         try:
-            return read_footprint(text)
+            return parse_footprint(text)
         except BadFootprintError as error:
             self.get_logger().error(str(error))
             raise bad_value("footprint", text, self.get_name()) from None
 
     def _leave_out_filters(self) -> None:
         for name in self._filters:
-            declare_unread(self, name)
+            declare_unused(self, name)
         if self._filters:
             named = ", ".join(self._filters)
             self.get_logger().warning(f"costmap filters are not supported: the costmap ignores {named}")
@@ -306,7 +306,7 @@ class CostmapNode(ManagedNode):
         if layered is None or layered.rolling:
             return
         known = layered.costmap.grid
-        wanted = _upright(grid) if frame == self.global_frame else grid
+        wanted = _axis_aligned_grid(grid) if frame == self.global_frame else grid
         if (known.rows, known.columns, known.resolution, known.x, known.y) != (
             wanted.rows,
             wanted.columns,
@@ -416,12 +416,14 @@ def make_costmap(server: Node, graph: Graph, options: NodeOptions, name: str) ->
         name,
         namespace=namespace,
         parameters=parameters,
-        remappings=[_for_tf(server, remapping) for remapping in remappings if not remapping[0].startswith("__")],
+        remappings=[
+            _adapt_tf_remapping(server, remapping) for remapping in remappings if not remapping[0].startswith("__")
+        ],
         enclave=ros.enclave or "/",
     )
 
 
-def _for_tf(server: Node, rule: tuple[str, str]) -> tuple[str, str]:
+def _adapt_tf_remapping(server: Node, rule: tuple[str, str]) -> tuple[str, str]:
     """Return the remapping rule for the costmap that corresponds to one of the server.
 
     A relative tf topic is resolved in the server's namespace.
@@ -429,12 +431,12 @@ def _for_tf(server: Node, rule: tuple[str, str]) -> tuple[str, str]:
     Source: in nav2, a costmap listens to transforms with a node of its process that is not in the costmap's namespace.
     """
     source, target = rule
-    if source not in _OF_TF or target.startswith("/"):
+    if source not in _TF_TOPICS or target.startswith("/"):
         return rule
     return source, join(server.get_namespace(), target)
 
 
-def _upright(grid: Grid) -> Grid:
+def _axis_aligned_grid(grid: Grid) -> Grid:
     """Return the smallest axis-aligned grid that contains another grid.
 
     Only the size and origin of the result are meaningful.

@@ -24,7 +24,7 @@ from linkwright.navigation.costmaps.static_layer import Interpretation, MapPose,
 from linkwright.navigation.costmaps.voxel_layer import MOST_LEVELS, VoxelLayer, Voxels
 from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.nodes.costmap_sources import MapTopic, PointsTopic, RangeTopic, SensorTopic
-from linkwright.navigation.nodes.plugins import declare_unread, texts_of, value_of
+from linkwright.navigation.nodes.plugins import declare_unused, string_list, value_of
 from linkwright.nodes.parameter_tables import declared
 from linkwright.nodes.settings import bad_value
 
@@ -73,10 +73,10 @@ def make_layers(shared: Surroundings, names: list[str]) -> None:
     """
     makers: dict[str, Callable[[Surroundings, str], Layer]] = {
         "StaticLayer": _static,
-        "ObstacleLayer": _obstacles,
+        "ObstacleLayer": _make_obstacle_layer,
         "VoxelLayer": _voxels,
         "InflationLayer": _inflation,
-        "DenoiseLayer": _denoise,
+        "DenoiseLayer": _make_denoise_layer,
         "RangeSensorLayer": _ranges,
     }
     node = shared.node
@@ -87,7 +87,7 @@ def make_layers(shared: Surroundings, names: list[str]) -> None:
             raise LinkwrightError(Diagnostic("NODE431", message))
         maker = makers.get(kind.removeprefix("nav2_costmap_2d::"))
         if maker is None:
-            declare_unread(node, name)
+            declare_unused(node, name)
             node.get_logger().warning(f"layers of type {kind} are not supported: the costmap ignores '{name}'")
             continue
         node.get_logger().info(f'Using plugin "{name}"')
@@ -100,7 +100,7 @@ def make_layers(shared: Surroundings, names: list[str]) -> None:
         if undeclared_override.endswith(".plugin")
     ]
     for name in given:
-        declare_unread(node, name)
+        declare_unused(node, name)
     if given:
         node.get_logger().info(f"layers that 'plugins' does not name are ignored: {', '.join(given)}")
 
@@ -166,7 +166,7 @@ def _static(shared: Surroundings, name: str) -> Layer:
     return layer
 
 
-def _obstacles(shared: Surroundings, name: str) -> Layer:
+def _make_obstacle_layer(shared: Surroundings, name: str) -> Layer:
     return ObstacleLayer(
         _buffers(shared, name),
         declared(shared.node, Heights, name),
@@ -224,7 +224,7 @@ def _ranges(shared: Surroundings, name: str) -> Layer:
     layer = RangeLayer(declared(shared.node, RangeSettings, name))
     shared.value(f"{name}.inflate_cone", 1.0)
     shared.value(f"{name}.input_sensor_type", "ALL")
-    for topic in texts_of(shared.node, f"{name}.topics", []):
+    for topic in string_list(shared.node, f"{name}.topics", []):
         listening = RangeTopic(
             shared.node, _in_parent_namespace(shared.node, topic), layer, shared.transforms, shared.frame
         )
@@ -233,7 +233,7 @@ def _ranges(shared: Surroundings, name: str) -> Layer:
     return layer
 
 
-def _denoise(shared: Surroundings, name: str) -> Layer:
+def _make_denoise_layer(shared: Surroundings, name: str) -> Layer:
     return DenoiseLayer(
         shared.value(f"{name}.minimal_group_size", 2), shared.value(f"{name}.group_connectivity_type", 8)
     )

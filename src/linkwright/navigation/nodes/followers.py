@@ -24,7 +24,7 @@ from linkwright.navigation.following.follower import Follower, Velocity
 from linkwright.navigation.following.pure_pursuit import PurePursuitParameters, RegulatedPurePursuit
 from linkwright.navigation.following.rotation_shim import RotationShim, RotationShimParameters
 from linkwright.navigation.following.sampling import Limits, SamplingFollower, SamplingParameters
-from linkwright.navigation.nodes.plugins import declare_unread, type_of, value_of
+from linkwright.navigation.nodes.plugins import declare_unused, type_of, value_of
 from linkwright.nodes.parameter_tables import declared
 from linkwright.nodes.settings import bad_value
 
@@ -49,7 +49,7 @@ def make_follower(node: Node, plugin: str) -> Follower:
     if kind == ROTATION_SHIM:
         return _with_shim(node, plugin)
     follower = _made(node, plugin, kind)
-    unread = declare_unread(node, plugin)
+    unread = declare_unused(node, plugin)
     if kind in (DWB, MPPI):
         ignored = f"; without effect here: {', '.join(unread)}" if unread else ""
         logger.info(f"{plugin}: Linkwright's velocity-sampling follower replaces {kind}{ignored}")
@@ -64,7 +64,7 @@ def _with_shim(node: Node, plugin: str) -> Follower:
     parameters = declared(node, RotationShimParameters, plugin)
     primary = str(value_of(node, f"{plugin}.primary_controller", DWB)).replace("::", "/")
     follower = RotationShim(_made(node, plugin, primary), parameters)
-    unread = declare_unread(node, plugin)
+    unread = declare_unused(node, plugin)
     if unread:
         node.get_logger().info(f"{plugin}: without effect here: {', '.join(unread)}")
     return follower

@@ -57,7 +57,7 @@ class GoalServer:
             node,
             self._type,
             name,
-            _never,
+            _do_not_execute,
             goal_callback=self._judge,
             handle_accepted_callback=self._accepted,
             cancel_callback=lambda _goal: CancelResponse.ACCEPT,
@@ -138,5 +138,5 @@ class GoalServer:
         return result
 
 
-def _never(_goal: ServerGoalHandle) -> None:
+def _do_not_execute(_goal: ServerGoalHandle) -> None:
     """Do nothing, because goals are executed by timers instead of this callback."""

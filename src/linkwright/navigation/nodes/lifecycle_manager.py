@@ -311,7 +311,7 @@ class LifecycleManager(SingleNode):
             managed.name,
             timeout=self._bond_timeout,
             on_formed=lambda: _finish(formed),
-            on_broken=lambda: self._broke(managed),
+            on_broken=lambda: self._on_bond_broken(managed),
         )
         if not await wait_for_future(self._node, formed, self._bond_timeout):
             formed.cancel()
@@ -324,7 +324,7 @@ class LifecycleManager(SingleNode):
         self._logger.info(f"Server {managed.name} connected with bond.")
         return True
 
-    def _broke(self, managed: _ManagedNodeClient) -> None:
+    def _on_bond_broken(self, managed: _ManagedNodeClient) -> None:
         self._begin(self._run_exclusively(lambda: self._bring_down(managed)))
 
     async def _bring_down(self, dead: _ManagedNodeClient) -> bool:
@@ -353,18 +353,18 @@ class LifecycleManager(SingleNode):
         The wait ends after ``bond_respawn_max_duration``, or when a command changes the nodes.
         """
         waited = 0.0
-        while waited < self._respawn_most and self._stays_down():
+        while waited < self._respawn_most and self._is_still_down():
             await wait_for_future(self._node, asyncio.get_running_loop().create_future(), _ONE_SECOND)
             waited += _ONE_SECOND
             async with self._busy:
-                if self._stays_down() and all([await managed.answers(_ONE_SECOND) for managed in self._managed]):
+                if self._is_still_down() and all([await managed.answers(_ONE_SECOND) for managed in self._managed]):
                     self._logger.info("Successfully re-established connections from server respawns, starting back up.")
                     await self._startup()
                     return
-        if self._stays_down():
+        if self._is_still_down():
             self._logger.info("Failed to re-establish connection from a server crash after maximum timeout.")
 
-    def _stays_down(self) -> bool:
+    def _is_still_down(self) -> bool:
         """Return whether no command has changed the nodes since they were taken down."""
         return self._state is _State.UNCONFIGURED
 

@@ -14,7 +14,7 @@ from linkwright.graph.command_line.ros_arguments import remove_ros_arguments
 from linkwright.graph.loop.node_handle import ReentrantCallbackGroup
 from linkwright.messages import get_message, get_service
 from linkwright.navigation.grids.occupancy import BadGridError, grid_of
-from linkwright.navigation.maps.map_files import FREE_THRESH, OCCUPIED_THRESH, SavedAs, save_map
+from linkwright.navigation.maps.map_files import FREE_THRESH, OCCUPIED_THRESH, MapSaveSettings, save_map
 from linkwright.navigation.maps.map_yaml import MapMode
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
 from linkwright.nodes.answers import wait_for_future
@@ -40,7 +40,7 @@ _INVALID = 255
 """The exit status of nav2's ``return -1``."""
 
 
-class _Saving:
+class _MapSaving:
     """The code shared by both programs, which receives a map and saves it."""
 
     def __init__(self, node: Node) -> None:
@@ -77,14 +77,14 @@ class _Saving:
         if not occupied:
             occupied = self._occupied
             logger.warning(f"Occupied threshold unspecified. Setting it to default value: {occupied:f}")
-        message = await self._map_of(topic)
+        message = await self._receive_map(topic)
         if message is None:
             return False
         io = self._node.graph.get_logger("map_io")
         if not name:
             name = f"map_{self._node.get_clock().now().nanoseconds // NANOSECONDS_PER_SECOND}"
             io.warning(f"Map file unspecified. Map will be saved to {name} file")
-        saved = SavedAs(name=name, occupied_thresh=occupied, free_thresh=free, image_format=kind, mode=mode)
+        saved = MapSaveSettings(name=name, occupied_thresh=occupied, free_thresh=free, image_format=kind, mode=mode)
         problem = self._write(message, saved, io)
         if problem is not None:
             logger.error(f"Failed to save the map: {problem}")
@@ -92,7 +92,7 @@ class _Saving:
         logger.info("Map saved successfully")
         return True
 
-    def _write(self, message: Any, saved: SavedAs, io: Logger) -> str | None:
+    def _write(self, message: Any, saved: MapSaveSettings, io: Logger) -> str | None:
         """Save the map of a message, and return None, or the reason for a failure."""
         try:
             grid = grid_of(message)
@@ -105,7 +105,7 @@ class _Saving:
             return "\n".join(render(diagnostic) for diagnostic in error.diagnostics)
         return None
 
-    async def _map_of(self, topic: str) -> Any:
+    async def _receive_map(self, topic: str) -> Any:
         """Return the next message of a topic, or None with a log line if none arrives in time."""
         node = self._node
         come: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
@@ -153,7 +153,7 @@ class MapSaver(SingleNode):
             self.finished.set_result(0)
             return
         with starting(self._node):
-            saving = _Saving(self._node)
+            saving = _MapSaving(self._node)
             log_unknown(self._node)
         try:
             arguments = _parsed(words)
@@ -169,7 +169,7 @@ class MapSaver(SingleNode):
             self._task.cancel()
         super().close()
 
-    async def _run(self, saving: _Saving, arguments: dict[str, str]) -> None:
+    async def _run(self, saving: _MapSaving, arguments: dict[str, str]) -> None:
         free, occupied = (float(arguments.get(option, 0.0)) for option in ("--free", "--occ"))
         mode = saving.mode(arguments.get("--mode", ""))
         saved = await saving.save(
@@ -207,7 +207,7 @@ class MapSaverNode(ManagedNode):
 
     def declare(self) -> None:
         """Declare nav2's parameters."""
-        self._saving = _Saving(self)
+        self._saving = _MapSaving(self)
 
     def configure(self) -> None:
         """Create the service ``save_map``."""
@@ -221,13 +221,13 @@ class MapSaverNode(ManagedNode):
             request.map_url,
             request.image_format,
             mode,
-            _decimal(request.free_thresh),
-            _decimal(request.occupied_thresh),
+            _round_float32(request.free_thresh),
+            _round_float32(request.occupied_thresh),
         )
         return response
 
 
-def _decimal(value: float) -> float:
+def _round_float32(value: float) -> float:
     """Round a float32 value to the decimal number that was sent: 0.649999976 to 0.65."""
     return round(value, 6)
 

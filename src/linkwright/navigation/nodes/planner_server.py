@@ -25,7 +25,7 @@ from linkwright.navigation.nodes.costmap import CostmapNode, make_costmap
 from linkwright.navigation.nodes.goals import GoalError, GoalServer
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
 from linkwright.navigation.nodes.paths import path_message, pose_of, poses_of
-from linkwright.navigation.nodes.plugins import declare_unread, texts_of, type_of
+from linkwright.navigation.nodes.plugins import declare_unused, string_list, type_of
 from linkwright.navigation.nodes.slices import WAIT, SlicedWork
 from linkwright.navigation.planning.planner import PlanError, Settings, plan
 from linkwright.nodes.options import NodeOptions
@@ -69,7 +69,7 @@ class PlannerNode(ManagedNode):
         Raises:
             LinkwrightError: NODE431, a planner has no type.
         """
-        self._planners = {name: self._planner(name) for name in texts_of(self, "planner_plugins", ["GridBased"])}
+        self._planners = {name: self._planner(name) for name in string_list(self, "planner_plugins", ["GridBased"])}
         self.get_logger().info(f"Planner Server has {' '.join(self._planners)}  planners available.")
         if self.get_parameter("expected_planner_frequency").value <= 0.0:
             self.get_logger().warning(
@@ -77,10 +77,10 @@ class PlannerNode(ManagedNode):
             )
         self.costmap.trigger_configure()
         self._plans = self.register(self.create_publisher(get_message("nav_msgs/msg/Path"), "plan", 1))
-        self._offer("ComputePathToPose", "compute_path_to_pose", self._to_pose)
-        self._offer("ComputePathThroughPoses", "compute_path_through_poses", self._through_poses)
+        self._offer("ComputePathToPose", "compute_path_to_pose", self._plan_to_pose)
+        self._offer("ComputePathThroughPoses", "compute_path_through_poses", self._plan_through_poses)
         kind = get_service("nav2_msgs/srv/IsPathValid")
-        self.register(self.create_service(kind, "is_path_valid", self._is_path_valid))
+        self.register(self.create_service(kind, "is_path_valid", self._on_is_path_valid))
 
     def activate(self) -> None:
         """Activate the costmap, and accept goals."""
@@ -104,7 +104,7 @@ class PlannerNode(ManagedNode):
         kind = type_of(self, name, _USUAL)
         settings = declared(self, Settings, name, _OTHERS.get(kind))
         if kind != _NAVFN:
-            declare_unread(self, name)
+            declare_unused(self, name)
             self.get_logger().warning(
                 f"{kind} is not supported: plans of '{name}' are computed like those of NavFn, in all directions and "
                 "without regard to the turning radius"
@@ -153,10 +153,10 @@ class PlannerNode(ManagedNode):
             path = path_message(poses, self.costmap.global_frame, self.get_clock().now().to_msg())
             self._plans.publish(path)
             took_ns = self.now_ns() - began_ns
-            self._complain_of_slowness(took_ns / NANOSECONDS_PER_SECOND)
+            self._warn_if_slow(took_ns / NANOSECONDS_PER_SECOND)
             server.succeed(path=path, planning_time=Duration(nanoseconds=took_ns).to_msg())
 
-    def _complain_of_slowness(self, seconds: float) -> None:
+    def _warn_if_slow(self, seconds: float) -> None:
         frequency = self.get_parameter("expected_planner_frequency").value
         if frequency > 0.0 and seconds > 1.0 / frequency:
             self.get_logger().warning(
@@ -173,13 +173,13 @@ class PlannerNode(ManagedNode):
 
     # --- planning -----------------------------------------------------------------------------------------------------
 
-    def _to_pose(self, request: Any) -> Work:
-        yield from self._until_current()
+    def _plan_to_pose(self, request: Any) -> Work:
+        yield from self._wait_until_current()
         start, goal = self._start_of(request), self._placed(request.goal)
         return (yield from self._planned(start, goal, request.planner_id))
 
-    def _through_poses(self, request: Any) -> Work:
-        yield from self._until_current()
+    def _plan_through_poses(self, request: Any) -> Work:
+        yield from self._wait_until_current()
         goals = getattr(request.goals, "poses", request.goals)
         if not len(goals):
             raise GoalError("NO_VIAPOINTS_GIVEN", "No viapoints given")
@@ -191,7 +191,7 @@ class PlannerNode(ManagedNode):
             start = (float(part[-1, 0]), float(part[-1, 1]), float(part[-1, 2]))
         return np.concatenate(parts)
 
-    def _until_current(self) -> Work:
+    def _wait_until_current(self) -> Work:
         timeout_ns = self.get_parameter("costmap_update_timeout").value * NANOSECONDS_PER_SECOND
         began_ns = self.now_ns()
         while not self.costmap.is_current:
@@ -226,7 +226,7 @@ class PlannerNode(ManagedNode):
 
     # --- the service --------------------------------------------------------------------------------------------------
 
-    def _is_path_valid(self, request: Any, response: Any) -> Any:
+    def _on_is_path_valid(self, request: Any, response: Any) -> Any:
         """Report whether a path is collision-free from the robot's position onward."""
         poses = poses_of(request.path.poses)
         here = self.costmap.robot_pose() if self.is_active else None

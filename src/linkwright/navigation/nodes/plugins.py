@@ -16,7 +16,7 @@ def value_of(node: Node, name: str, default: Any) -> Any:
     return node.declare_parameter(name, default).value
 
 
-def texts_of(node: Node, name: str, default: Sequence[str]) -> list[str]:
+def string_list(node: Node, name: str, default: Sequence[str]) -> list[str]:
     """Return the value of a string-array parameter, which may be empty.
 
     The parameter is declared first if necessary; see `value_of`.
@@ -50,7 +50,7 @@ def type_of(node: Node, plugin: str, usual: Mapping[str, str]) -> str:
     return str(given).replace("::", "/")
 
 
-def declare_unread(node: Node, plugin: str) -> list[str]:
+def declare_unused(node: Node, plugin: str) -> list[str]:
     """Declare the undeclared parameters of a plugin, and return their names without the prefix."""
     names = [
         undeclared_override

@@ -21,7 +21,7 @@ from linkwright.navigation.nodes.costmap_reading import costmap_of
 from linkwright.navigation.nodes.goals import GoalServer
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
 from linkwright.navigation.nodes.paths import path_message, poses_of
-from linkwright.navigation.nodes.plugins import declare_unread, texts_of, type_of
+from linkwright.navigation.nodes.plugins import declare_unused, string_list, type_of
 from linkwright.navigation.planning.smoothing import Smoothing, directions, smoothed
 from linkwright.nodes.parameter_tables import declared
 
@@ -48,7 +48,7 @@ class SmootherNode(ManagedNode):
         """
         load_scipy("linalg")
         self._costmap: Costmap | None = None
-        names = texts_of(self, "smoother_plugins", ["simple_smoother"])
+        names = string_list(self, "smoother_plugins", ["simple_smoother"])
         for name in names:
             self._make(name)
         self._smoothers = names
@@ -62,7 +62,7 @@ class SmootherNode(ManagedNode):
     def _make(self, name: str) -> None:
         kind = type_of(self, name, _USUAL)
         declared(self, Smoothing, name)
-        declare_unread(self, name)
+        declare_unused(self, name)
         if kind != _SIMPLE:
             self.get_logger().warning(f"{kind} is not supported: '{name}' smooths as {_SIMPLE} does")
         self.get_logger().info(f"Created smoother : {name} of type {kind}")

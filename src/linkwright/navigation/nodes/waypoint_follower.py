@@ -77,7 +77,7 @@ class WaypointNode(StepNode):
         try:
             yield from self.run_remote_goal(self._navigation, goal, f"waypoint {self._index} was not reached")
         except StepError as failure:
-            self._missed.append(self._miss(pose, str(failure)))
+            self._missed.append(self._missed_waypoint(pose, str(failure)))
             if self.get_parameter("stop_on_failure").value:
                 raise
             self.get_logger().warning(f"{failure}; moving to next")
@@ -86,7 +86,7 @@ class WaypointNode(StepNode):
         while self.now_ns() < until_ns:
             yield
 
-    def _miss(self, pose: Any, reason: str) -> Any:
+    def _missed_waypoint(self, pose: Any, reason: str) -> Any:
         """Return the result's item for the current waypoint: an index in Humble, else a message."""
         if is_before_iron():
             return self._index

@@ -111,7 +111,7 @@ class _Watch:
         self._goal = b""
         feedback = get_message("nav2_msgs/action/NavigateToPose_FeedbackMessage")
         self._subscriptions = [
-            self._node.create_subscription(feedback, f"{_ACTION}/feedback", self._progressed, 10),
+            self._node.create_subscription(feedback, f"{_ACTION}/feedback", self._on_feedback, 10),
             self._node.create_subscription(
                 "action_msgs/msg/GoalStatusArray", f"{_ACTION}/status", self._goals_changed, ACTION_STATUS_QOS
             ),
@@ -181,7 +181,7 @@ class _Watch:
             fields.update(eta=None, distance=None, taken=None, recoveries=None)
         self._change(**fields)
 
-    def _progressed(self, message: Any) -> None:
+    def _on_feedback(self, message: Any) -> None:
         feedback = message.feedback
         distance = float(feedback.distance_remaining)
         self._change(

@@ -20,7 +20,7 @@ from linkwright.navigation.costmaps.costmap import INSCRIBED, LETHAL, MAX_PASSAB
 from linkwright.navigation.costmaps.layered import Pose
 from linkwright.navigation.grids.rays import cells_on_lines
 from linkwright.navigation.planning.descent import descend
-from linkwright.navigation.planning.potential import Cell, Floats, potential, prices
+from linkwright.navigation.planning.potential import Cell, Floats, crossing_prices, potential
 
 _ESCAPE_PRICE: Final = 2530.0
 """The cost of a cell too near to an obstacle, for a robot that starts in one: it leaves by the shortest path."""
@@ -96,9 +96,9 @@ def plan(costmap: Costmap, start: Pose, goal: Pose, settings: Settings) -> Gener
         raise _occupied(Problem.START_OCCUPIED, "Start", start)
     if costs[to_cell] == LETHAL:
         raise _occupied(Problem.GOAL_OCCUPIED, "Goal", goal)
-    price = prices(costs, allow_unknown=settings.allow_unknown)
+    price = crossing_prices(costs, allow_unknown=settings.allow_unknown)
     if costs[from_cell] == INSCRIBED and from_cell != to_cell:
-        _let_escape(price, costmap, from_cell, start)
+        _open_escape(price, costmap, from_cell, start)
     end = to_cell
     if price[to_cell] < np.inf:
         least = yield from potential(price, from_cell, to_cell, heuristic=settings.use_astar)
@@ -111,7 +111,7 @@ def plan(costmap: Costmap, start: Pose, goal: Pose, settings: Settings) -> Gener
     grid = costmap.grid
     begin = ((last[1] - grid.y) / grid.resolution, (last[0] - grid.x) / grid.resolution)
     way = yield from descend(least, from_cell, begin)
-    return _poses(_thinned(way[::-1], price), costmap, start, last, settings)
+    return _poses(_thin_path(way[::-1], price), costmap, start, last, settings)
 
 
 def run(steps: Generator[None, None, NDArray[np.float64]]) -> NDArray[np.float64]:
@@ -137,7 +137,7 @@ def _occupied(problem: Problem, what: str, pose: Pose) -> PlanError:
     return PlanError(problem, f"{what} Coordinates of({pose[0]:f}, {pose[1]:f}) was in lethal cost")
 
 
-def _let_escape(price: Floats, costmap: Costmap, cell: Cell, start: Pose) -> None:
+def _open_escape(price: Floats, costmap: Costmap, cell: Cell, start: Pose) -> None:
     """Make the cells passable that lead from a start near an obstacle to the nearest free cell.
 
     Raises:
@@ -183,7 +183,7 @@ def _nearest(least: Floats, costmap: Costmap, goal: Pose, cell: Cell, settings: 
     raise PlanError(Problem.NO_VALID_PATH, f"Failed to create plan with tolerance of: {settings.tolerance:f}")
 
 
-def _thinned(way: NDArray[np.float64], price: Floats) -> NDArray[np.float64]:
+def _thin_path(way: NDArray[np.float64], price: Floats) -> NDArray[np.float64]:
     """Drop every second point of a path where the straight line avoids unreachable cells."""
     cells = np.floor(way).astype(np.int64)
     between = np.arange(1, len(way) - 1, 2)

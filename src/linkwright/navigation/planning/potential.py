@@ -34,7 +34,7 @@ _ROUNDS_HELD: Final = 4
 _SMALLEST_GAIN: Final = 1e-3 * NEUTRAL
 
 
-def prices(costs: NDArray[np.uint8], *, allow_unknown: bool = True) -> Floats:
+def crossing_prices(costs: NDArray[np.uint8], *, allow_unknown: bool = True) -> Floats:
     """Return the price of crossing each cell, infinite where the robot does not fit.
 
     Args:
@@ -79,7 +79,7 @@ def potential(
     offsets = np.array([[-1], [1], [-width], [width]])
     begin = (source[0] + 1) * width + source[1] + 1
     end = None if target is None else (target[0] + 1) * width + target[1] + 1
-    ahead = _least_ahead(price, target) if heuristic and target is not None else None
+    ahead = _min_cost_to_target(price, target) if heuristic and target is not None else None
     least[begin], gain[begin] = 0.0, -np.inf
     least_step = float(step.min()) / sqrt(2.0)  # The smallest increase, if the path enters from both axes.
     front: NDArray[Any] = begin + offsets[:, 0]
@@ -90,7 +90,9 @@ def potential(
     while front.size or held.size:
         yield
         sides = least.take(front + offsets)
-        value = _crossed(np.minimum(sides[0], sides[1]), np.minimum(sides[2], sides[3]), step.take(front))
+        value = _potential_after_crossing(
+            np.minimum(sides[0], sides[1]), np.minimum(sides[2], sides[3]), step.take(front)
+        )
         better = np.flatnonzero(value < gain.take(front) - _SMALLEST_GAIN)
         front, value = front.take(better), value.take(better)
         least[front] = value
@@ -118,7 +120,7 @@ def potential(
     return result
 
 
-def _crossed(a: Floats, b: Floats, price: Floats) -> Floats:
+def _potential_after_crossing(a: Floats, b: Floats, price: Floats) -> Floats:
     """Return the potential of cells from their prices and the cheaper neighbour on each axis."""
     low, high = np.minimum(a, b), np.maximum(a, b)
     apart = np.minimum(high - low, price)  # Beyond the price, the path enters from one side only.
@@ -126,7 +128,7 @@ def _crossed(a: Floats, b: Floats, price: Floats) -> Floats:
     return value
 
 
-def _least_ahead(price: Floats, target: Cell) -> Floats:
+def _min_cost_to_target(price: Floats, target: Cell) -> Floats:
     """Return a lower bound of the cost from each cell to the target.
 
     The result is flat, and includes a border of one cell.

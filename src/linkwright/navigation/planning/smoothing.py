@@ -88,7 +88,7 @@ def _once(
         return points, True
     stays = fixed.copy()
     while True:
-        found = _solved(points, stays, smoothing)
+        found = _solve_equilibrium(points, stays, smoothing)
         if costmap is None:
             return found, True
         bad = _blocked(found, costmap) & ~stays
@@ -113,7 +113,7 @@ def _blocked(points: Points, costmap: Costmap) -> NDArray[np.bool_]:
     return blocked
 
 
-def _solved(points: Points, stays: NDArray[np.bool_], smoothing: Smoothing) -> Points:
+def _solve_equilibrium(points: Points, stays: NDArray[np.bool_], smoothing: Smoothing) -> Points:
     """Return the points y that solve w_data (y - x) = w_smooth (previous + next - 2 y).
 
     Points in the mask `stays` keep their positions x.

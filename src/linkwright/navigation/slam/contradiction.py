@@ -16,7 +16,7 @@ _BEHIND = 0.3
 _FEWEST = 20
 
 
-def contradiction(first: PlanarScan, first_pose: Floats, second: PlanarScan, second_pose: Floats) -> float:
+def contradiction_share(first: PlanarScan, first_pose: Floats, second: PlanarScan, second_pose: Floats) -> float:
     """Return the share of a scan's points through which the other scan's rays pass.
 
     The share is computed for both scans, and the larger one is returned, from 0 to 1.

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkwright.navigation.slam.contradiction import contradiction
+from linkwright.navigation.slam.contradiction import contradiction_share
 from linkwright.navigation.slam.matching import Match, match
 from linkwright.navigation.slam.occupancy import OccupancyMap
 from linkwright.navigation.slam.pose_graph import PoseGraph
@@ -321,7 +321,7 @@ class Mapper:
             return None
         nearest = self._nearest(nodes, found.pose)
         pose = self.graph.poses[nearest]
-        if contradiction(self.scans[nearest], pose, scan, found.pose) > _MOST_CONTRADICTION:
+        if contradiction_share(self.scans[nearest], pose, scan, found.pose) > _MOST_CONTRADICTION:
             return None
         information = found.information + _NOTHING * np.eye(3)
         self.graph.add_edge(nearest, number, relative_pose(pose, found.pose), information, doubtful=True)

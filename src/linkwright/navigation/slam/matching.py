@@ -80,10 +80,10 @@ def match(
         pose, response = yield from best_pose(likelihood, scan.points, guess, wider)
     reference.find_lines()
     yield
-    return _refined(reference, scan, guess, pose, response)
+    return _refine(reference, scan, guess, pose, response)
 
 
-def _refined(reference: Reference, scan: PlanarScan, guess: Floats, start: Floats, response: float) -> Match:
+def _refine(reference: Reference, scan: PlanarScan, guess: Floats, start: Floats, response: float) -> Match:
     """Refine a pose by point-to-line ICP with Cauchy weights.
 
     Source: Censi, "An ICP variant using a point-to-line metric", 2008.
@@ -91,22 +91,22 @@ def _refined(reference: Reference, scan: PlanarScan, guess: Floats, start: Float
     reach = max(float(np.sqrt((scan.points**2).sum(axis=1).mean())), 0.1)
     scale = np.array((1.0, 1.0, 1.0 / reach))  # Scale the rotation to the distance by which it moves an average point.
     pose, farthest = start.copy(), _FARTHEST
-    system = _equations(reference, scan, pose, farthest, scale)
-    free = _constrained(system[0], len(scan.points))
+    system = _normal_equations(reference, scan, pose, farthest, scale)
+    free = _constrained_projection(system[0], len(scan.points))
     turn = wrapped(start - guess)[2]
     shift: Floats = np.array((start[0] - guess[0], start[1] - guess[1], turn)) / scale
     pose = guess + scale * (free @ shift)
     for _ in range(_ROUNDS):
-        hessian, gradient, _, _ = _equations(reference, scan, pose, farthest, scale)
-        free = _constrained(hessian, len(scan.points))
+        hessian, gradient, _, _ = _normal_equations(reference, scan, pose, farthest, scale)
+        free = _constrained_projection(hessian, len(scan.points))
         step: Floats = -np.linalg.pinv(free @ hessian @ free, rcond=1e-9, hermitian=True) @ (free @ gradient)
         step *= min(1.0, 0.2 / max(float(np.abs(step).max()), 1e-12))
         pose += scale * step
         if np.abs(step).max() < _CONVERGED and farthest == _NEAREST:
             break
         farthest = max(_NEAREST, 0.7 * farthest)
-    hessian, _, inliers, error = _equations(reference, scan, pose, _NEAREST, scale)
-    free = _constrained(hessian, len(scan.points))
+    hessian, _, inliers, error = _normal_equations(reference, scan, pose, _NEAREST, scale)
+    free = _constrained_projection(hessian, len(scan.points))
     unscaled = free @ hessian @ free / np.outer(scale, scale)
     cos, sin = np.cos(pose[2]), np.sin(pose[2])
     axes = np.array(((cos, -sin, 0.0), (sin, cos, 0.0), (0.0, 0.0, 1.0)))
@@ -115,7 +115,7 @@ def _refined(reference: Reference, scan: PlanarScan, guess: Floats, start: Float
     return Match(pose, response, information, inliers, error)
 
 
-def _constrained(hessian: Floats, points: int) -> Floats:
+def _constrained_projection(hessian: Floats, points: int) -> Floats:
     """Return the projection onto the directions that the points constrain, of shape (3, 3)."""
     values, vectors = np.linalg.eigh(hessian)
     kept = vectors[:, values > _SINGULAR * points]
@@ -123,7 +123,7 @@ def _constrained(hessian: Floats, points: int) -> Floats:
     return result
 
 
-def _equations(
+def _normal_equations(
     reference: Reference, scan: PlanarScan, pose: Floats, farthest: float, scale: Floats
 ) -> tuple[Floats, Floats, float, float]:
     """Return the normal equations of point-to-line matching at a pose.

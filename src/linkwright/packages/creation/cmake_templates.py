@@ -93,7 +93,7 @@ def plain_cmake_lists(request: PackageRequest) -> str:
 
 
 def config(request: PackageRequest) -> str:
-    """Return the content of ``<name>Config.cmake.in``, which ``find_package`` in other projects reads."""
+    """Return ``<name>Config.cmake.in``, which ``find_package`` in other projects reads."""
     lines = [
         f"# Found by find_package({request.name}). It defines",
         f"#   {request.name}_INCLUDE_DIRS: folders with headers",
@@ -110,8 +110,8 @@ def config(request: PackageRequest) -> str:
     return "\n".join([*lines, "", *settings]) + "\n"
 
 
-def config_version() -> str:
-    """Return the content of ``<name>ConfigVersion.cmake.in``, which checks the requested version."""
+def config_version_template() -> str:
+    """Return ``<name>ConfigVersion.cmake.in``, which checks the requested version."""
     return """\
 set(PACKAGE_VERSION "@PROJECT_VERSION@")
 

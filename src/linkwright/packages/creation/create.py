@@ -211,7 +211,7 @@ def _cmake_steps(request: PackageRequest) -> Iterator[Step]:
         yield File(Path("CMakeLists.txt"), cmake_templates.plain_cmake_lists(request))
         if request.node or request.library_name:
             yield File(Path(f"{request.name}Config.cmake.in"), cmake_templates.config(request))
-            yield File(Path(f"{request.name}ConfigVersion.cmake.in"), cmake_templates.config_version())
+            yield File(Path(f"{request.name}ConfigVersion.cmake.in"), cmake_templates.config_version_template())
     if request.node:
         yield File(source / f"{request.node}.cpp", cmake_templates.node_cpp(request))
     if request.library_name:

@@ -13,7 +13,7 @@ def known_licenses() -> list[str]:
 
 
 def license_text(identifier: str, *, year: int, holder: str) -> str | None:
-    """Return the text of a licence with its copyright line filled in, or None for an unknown identifier.
+    """Return the text of a licence with its copyright line, or None for an unknown identifier.
 
     The Lesser GPL is a set of additional permissions to the GPL, so the text of the GPL follows its text.
     """

@@ -113,7 +113,7 @@ setup(
 
 
 def setup_cfg(request: PackageRequest) -> str:
-    """Return the text of ``setup.cfg``, which installs executables where ``ros2 run`` searches for them."""
+    """Return ``setup.cfg``, which installs executables where ``ros2 run`` searches for them."""
     scripts = f"$base/lib/{request.name}"
     return f"[develop]\nscript_dir={scripts}\n[install]\ninstall_scripts={scripts}\n"
 

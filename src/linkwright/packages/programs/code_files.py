@@ -12,12 +12,12 @@ _LIBRARY = tuple({sysconfig.get_path("stdlib"), sysconfig.get_path("purelib"), s
 
 
 def is_ours(filename: str) -> bool:
-    """Return whether a program file belongs to Linkwright, except the robot packages that it ships."""
+    """Return whether a program file belongs to Linkwright, except to a shipped robot package."""
     return filename.startswith(_OURS) and not filename.startswith(_SHIPPED_PACKAGES)
 
 
 def is_users(filename: str) -> bool:
-    """Return whether a program file belongs to the user, not to Linkwright or an installed library."""
+    """Return whether a program file belongs to the user, not to Linkwright or a library."""
     if filename.startswith("<") or is_ours(filename):
         return False
     return not filename.startswith(tuple(folder for folder in _LIBRARY if folder))

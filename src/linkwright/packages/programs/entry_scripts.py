@@ -1,4 +1,4 @@
-"""Cached script files for entry points of unbuilt packages, which ``colcon build`` would install.
+"""Cached script files for entry points, which ``colcon build`` would install.
 
 A launch file may search for the path of an executable, and debuggers, shells and process lists expect a program with
 its own name. Therefore, a script file is written for an entry point.

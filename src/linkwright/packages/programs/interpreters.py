@@ -17,18 +17,20 @@ _ASK_SECONDS = 5.0
 
 
 def needs_our_interpreter(path: Path) -> bool:
-    """Return whether a script names a Python version other than this process's, and ROS is not installed.
+    """Return whether a script that names another Python version must run in this one.
+
+    This is the case if ROS is not installed.
 
     Linkwright's stand-ins for ROS modules need compiled libraries, which exist only for the version of this process.
     """
-    interpreter = _interpreter_of(path)
+    interpreter = _python_interpreter(path)
     if interpreter is None or _has_ros_for_python():
         return False
-    return _version_of(interpreter) not in (None, sys.version_info[:2])
+    return _python_version(interpreter) not in (None, sys.version_info[:2])
 
 
 def interpreter_words(path: Path) -> list[str]:
-    """Return the interpreter and its arguments in a script's first line; empty if there are none."""
+    """Return the interpreter and its arguments in a script's first line, or an empty list."""
     try:
         with path.open("rb") as file:
             first = file.readline(512)
@@ -37,8 +39,8 @@ def interpreter_words(path: Path) -> list[str]:
     return shlex.split(first[2:].decode(errors="replace")) if first.startswith(b"#!") else []
 
 
-def _interpreter_of(path: Path) -> str | None:
-    """Return the Python interpreter that a script's first line names, or None for other programs."""
+def _python_interpreter(path: Path) -> str | None:
+    """Return the Python interpreter that a script's first line names, or None."""
     words = interpreter_words(path)
     if words and Path(words[0]).name == "env":
         words = [word for word in words[1:] if not word.startswith("-")]
@@ -48,7 +50,7 @@ def _interpreter_of(path: Path) -> str | None:
 
 
 @cache
-def _version_of(interpreter: str) -> tuple[int, ...] | None:
+def _python_version(interpreter: str) -> tuple[int, ...] | None:
     named = _VERSION.search(Path(os.path.realpath(interpreter)).name)
     if named:
         return int(named[1]), int(named[2])

@@ -1,4 +1,4 @@
-"""Hints on the provider of a missing Python module or name: a ROS package, PyPI, or another module."""
+"""Hints on what provides a missing Python module or name: a ROS package, PyPI, or a module."""
 
 from __future__ import annotations
 
@@ -79,12 +79,15 @@ _CANNOT_IMPORT = re.compile(r"cannot import name '([^']+)' from '([^']+)'")
 
 
 def missing_name(error: ImportError) -> tuple[str, str] | None:
-    """Return the name that cannot be imported and its module, or None if the module itself is missing."""
+    """Return the name that cannot be imported and its module.
+
+    The result is None if the module itself is missing.
+    """
     found = _CANNOT_IMPORT.search(str(error))
     return None if found is None else (found[1], found[2])
 
 
-def where_it_is(error: ImportError) -> Phrase | None:
+def other_module_hint(error: ImportError) -> Phrase | None:
     """Return a hint on other modules that define a name that cannot be imported, or None.
 
     Only Linkwright's stand-ins provide this information.

@@ -1,8 +1,8 @@
 """The programs that an unbuilt package would install.
 
 They are read from ``setup.py``, ``setup.cfg`` and ``pyproject.toml`` (entry points and scripts) and from
-``install(PROGRAMS ...)`` in ``CMakeLists.txt``. Nothing is executed, with one exception: a ``setup.py`` that
-computes its entry points is run in a separate process, with a ``setup()`` that only reports them.
+``install(PROGRAMS ...)`` in ``CMakeLists.txt``. Nothing is executed, with one exception: a ``setup.py`` that computes
+its entry points is run in a separate process, with a ``setup()`` that only reports them.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from linkwright.packages.readers.entry_points import (
     LINE,
     PROGRAMS,
     EntryPoint,
-    in_pyproject,
-    in_setup_cfg,
     option_lines,
+    read_pyproject_group,
+    read_setup_cfg_group,
     text_of,
 )
 
@@ -32,7 +32,7 @@ _PYTHON_PACKAGE = lazy_pattern(r"^\s*ament_python_install_package\s*\(", re.MULT
 BUILD_FILES = ("setup.py", "setup.cfg", "pyproject.toml", "CMakeLists.txt")
 NOT_FOR_PROGRAMS = frozenset({"setup", "conftest", "test", "tests"})
 _ASK_SECONDS = 10.0
-_ASK = """
+_SETUP_RUNNER = """
 import json, runpy, sys, types
 def setup(**given):
     found = given.get("entry_points") or {}
@@ -111,7 +111,10 @@ def _modules(folder: Path) -> Iterator[Path]:
 def _read_configurations(found: SourcePrograms) -> None:
     """Add the programs in ``pyproject.toml`` and ``setup.cfg``."""
     cfg = text_of(found.folder / "setup.cfg")
-    for line in (*in_pyproject(text_of(found.folder / "pyproject.toml"), PROGRAMS), *in_setup_cfg(cfg, PROGRAMS)):
+    for line in (
+        *read_pyproject_group(text_of(found.folder / "pyproject.toml"), PROGRAMS),
+        *read_setup_cfg_group(cfg, PROGRAMS),
+    ):
         _add_entry(found, line)
     for line in option_lines(cfg, "options", "scripts"):
         _add_script(found, line.strip())
@@ -129,18 +132,26 @@ def _read_setup_py(found: SourcePrograms) -> None:
         found.entry_points[entry.executable] = EntryPoint(entry.module, entry.function or "main")
     computed = facts.call and not facts.entry_points_complete
     if computed or re.search(r"\bscripts\s*=", text):
-        entries, scripts = _computed_programs(found.folder)
+        entries, scripts = _run_setup_py(found.folder)
         for line in entries:
             _add_entry(found, line)
         for name in scripts:
             _add_script(found, name)
 
 
-def _computed_programs(folder: Path) -> tuple[list[str], list[str]]:
-    """Run a ``setup.py``, and return the entry points and scripts that it reports; empty if it fails."""
+def _run_setup_py(folder: Path) -> tuple[list[str], list[str]]:
+    """Run a ``setup.py``, and return the entry points and scripts that it reports.
+
+    Both lists are empty if the run fails.
+    """
     try:
         done = subprocess.run(  # noqa: S603 - the user runs a program of this very package
-            [sys.executable, "-c", _ASK], cwd=folder, capture_output=True, timeout=_ASK_SECONDS, check=True, text=True
+            [sys.executable, "-c", _SETUP_RUNNER],
+            cwd=folder,
+            capture_output=True,
+            timeout=_ASK_SECONDS,
+            check=True,
+            text=True,
         )
         entries, scripts = json.loads(done.stdout.splitlines()[-1])
     except (OSError, subprocess.SubprocessError, ValueError, IndexError):

@@ -15,7 +15,7 @@ _PYTHON = "PYTHONPATH"
 
 
 def workspace_environment(finder: PackageFinder, base: Mapping[str, str]) -> dict[str, str]:
-    """Return an environment as if all workspaces were built and their ``setup.bash`` were sourced.
+    """Return an environment as if all workspaces were built and sourced.
 
     Args:
         finder: the finder of packages.

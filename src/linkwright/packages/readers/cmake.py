@@ -187,7 +187,7 @@ class CMakeFile:
 
     @property
     def programs(self) -> dict[str, str]:
-        """The installed programs that are files of the package: name -> path relative to the package."""
+        """The installed programs that are files: name -> path relative to the package."""
         return {
             rule.renamed or PurePosixPath(item.text).name: item.text
             for rule in self.copies
@@ -216,7 +216,7 @@ class CMakeFile:
         return self._files(package, None)
 
     def moved(self, package: Path, share: str) -> Iterator[InstalledFile]:
-        """Yield the installed files whose path in the share folder differs from the path in the package.
+        """Yield the installed files whose paths in the share folder and in the package differ.
 
         Folders whose files keep their paths are not read. Missing files, and some files that are installed outside the
         share folder, are left out.
@@ -255,7 +255,7 @@ class CMakeFile:
             yield InstalledFile(item, str(single))
             return
         below = into if item.endswith("/") else into / path.resolve().name
-        if share is not None and (below == share / here or not _overlap(below, share)):
+        if share is not None and (below == share / here or not _is_nested(below, share)):
             return
         for file in sorted(path.rglob("*")):
             inside = PurePosixPath(file.relative_to(path).as_posix())
@@ -282,7 +282,7 @@ class CMakeFile:
         self._made[destination] = InstalledFile(source, destination, values, text)
 
 
-def _overlap(one: PurePosixPath, other: PurePosixPath) -> bool:
+def _is_nested(one: PurePosixPath, other: PurePosixPath) -> bool:
     """Return whether two folders are the same or one contains the other."""
     return one.is_relative_to(other) or other.is_relative_to(one)
 
@@ -326,7 +326,7 @@ def _read_command(file: CMakeFile, command: Command, program: CMakeProgram) -> N
         content = (before.content or "" if before else "") + "".join(words[2:])
         file._generated[path] = InstalledFile(_NAME, "", None, content)
     elif name in ("install", "catkin_install_python") and words:
-        _install(file, command)
+        _read_install(file, command)
     elif name == "rosidl_generate_interfaces":
         file.interfaces += [within_package(word, command.folder) for word in words if word.endswith(_INTERFACES)]
     elif name == "ament_python_install_package" and words:
@@ -366,7 +366,7 @@ def _read_hooks(file: CMakeFile, command: Command, program: CMakeProgram) -> Non
 
 
 def _read_resource(file: CMakeFile, command: Command) -> None:
-    """Record an entry of the resource index, and the plugin description that the entry refers to."""
+    """Record an entry of the resource index, and the plugin description that it refers to."""
     words, project = command.words, file.project.text if file.project else ""
     if command.name == "ament_index_register_resource":
         name, content = _following(words, "PACKAGE_NAME") or project, _following(words, "CONTENT") or ""
@@ -379,7 +379,7 @@ def _read_resource(file: CMakeFile, command: Command) -> None:
         _add(file, rule, command)
 
 
-def _install(file: CMakeFile, command: Command) -> None:
+def _read_install(file: CMakeFile, command: Command) -> None:
     arguments, words = command.arguments, command.words
     kind = words[0]
     items = tuple(takewhile(lambda argument: argument.text not in _KEYWORDS, arguments[1:]))

@@ -1,4 +1,4 @@
-"""The CMake commands whose installed files are known: those of CMake and of ROS's build tools.
+"""The CMake commands, of CMake and of ROS's build tools, whose installed files are known.
 
 A package may define other commands, such as ``pal_register_modules`` of pal_module_cmake. Their definitions cannot be
 read here, so the files that they install are not known.

@@ -1,4 +1,4 @@
-"""Evaluation of CMake's conditions in ``if(...)`` and ``while(...)`` to true, false or unknown."""
+"""Evaluation of conditions in ``if(...)`` and ``while(...)`` to true, false or unknown."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class Condition:
         """Return whether the condition is true, or None if that is not known."""
         if len(self.words) > _MOST_WORDS:
             return None
-        answer = self._either()
+        answer = self._evaluate_or()
         return answer if self._at == len(self.words) else None
 
     def _next(self, *keywords: str) -> bool:
@@ -74,7 +74,7 @@ class Condition:
             return True
         return False
 
-    def _either(self) -> bool | None:
+    def _evaluate_or(self) -> bool | None:
         found = self._both()
         while self._next("OR"):
             other = self._both()
@@ -82,21 +82,21 @@ class Condition:
         return found
 
     def _both(self) -> bool | None:
-        found = self._negated()
+        found = self._evaluate_not()
         while self._next("AND"):
-            other = self._negated()
+            other = self._evaluate_not()
             found = False if False in (found, other) else None if None in (found, other) else True
         return found
 
-    def _negated(self) -> bool | None:
+    def _evaluate_not(self) -> bool | None:
         if self._next("NOT"):
-            found = self._negated()
+            found = self._evaluate_not()
             return None if found is None else not found
-        return self._test()
+        return self._evaluate_test()
 
-    def _test(self) -> bool | None:
+    def _evaluate_test(self) -> bool | None:
         if self._next("("):
-            found = self._either()
+            found = self._evaluate_or()
             return found if self._next(")") else None
         if self._at >= len(self.words):
             return None

@@ -1,4 +1,4 @@
-"""An interpreter for the part of CMake's language that decides which files a package installs.
+"""An interpreter for the part of CMake's language that determines a package's files.
 
 Commands are yielded in the order in which CMake runs them. The interpreter evaluates variables, lists, texts, loops,
 functions and macros of the file, and runs subdirectories and included files. It also evaluates patterns of files, and
@@ -26,9 +26,9 @@ from linkwright.packages.readers.cmake_syntax import ENDS, Statement, Token, bra
 from linkwright.packages.readers.cmake_values import (
     UNKNOWN,
     evaluate_math,
+    filename_component,
     items_of,
     list_command,
-    part_of_name,
     string_command,
     version_variables,
 )
@@ -93,7 +93,7 @@ class Command:
 
 
 class _TooMuchError(Exception):
-    """Raised with the name of a command when a file takes too many steps or its texts become too long."""
+    """Raised with a command's name when a file takes too many steps or a text is too long."""
 
 
 @dataclass(slots=True)
@@ -191,7 +191,7 @@ class CMakeProgram:
             yield from self._run_foreach(words, body)
 
     def _run_branches(self, opening: Statement, body: Sequence[Statement]) -> Iterator[Command]:
-        """Yield the commands of the first branch whose condition is true, and of unknown ones before it."""
+        """Yield the commands of the branch with a true condition, and of unknown ones before it."""
         is_uncertain = False
         for condition, branch in branches(opening, body):
             answer = True if condition is None else self._holds(condition)
@@ -297,9 +297,9 @@ class CMakeProgram:
         elif name in self._routines:
             yield from self._call(self._routines[name], words)
         elif name in ("add_subdirectory", "include") and words:
-            yield from self._read_other(name, words[0])
+            yield from self._run_other_file(name, words[0])
         else:
-            self._assign(name, words)
+            self._apply_assignment(name, words)
             yield command
 
     def _call(self, routine: _Routine, words: list[str]) -> Iterator[Command]:
@@ -325,7 +325,7 @@ class CMakeProgram:
             for name in bound:
                 _restore(self.variables, name, outside.get(name))
 
-    def _read_other(self, command: str, word: str) -> Iterator[Command]:
+    def _run_other_file(self, command: str, word: str) -> Iterator[Command]:
         is_folder = command == "add_subdirectory"
         if not is_folder and "/" not in word and not word.endswith(".cmake"):
             return  # a module of CMake itself, which installs nothing
@@ -363,7 +363,7 @@ class CMakeProgram:
 
     # --- variables ---------------------------------------------------------------------------------------------------
 
-    def _assign(self, name: str, words: list[str]) -> None:
+    def _apply_assignment(self, name: str, words: list[str]) -> None:
         """Set the variables that a command such as ``set`` or ``list`` changes."""
         if name == "project" and words:
             self.variables["PROJECT_NAME"] = self.variables["CMAKE_PROJECT_NAME"] = words[0]
@@ -385,9 +385,9 @@ class CMakeProgram:
         elif name == "math" and len(words) > 2:
             self._set(words[1], evaluate_math(words[2]))
         elif name == "get_filename_component" and len(words) > 2:
-            self._set(words[0], part_of_name(words[1], words[2]))
+            self._set(words[0], filename_component(words[1], words[2]))
         elif name == "file" and len(words) > 1 and words[0] in ("GLOB", "GLOB_RECURSE"):
-            self._set(words[1], self._matching(words[2:], recursive=words[0] == "GLOB_RECURSE"))
+            self._set(words[1], self._glob_files(words[2:], recursive=words[0] == "GLOB_RECURSE"))
         elif name == "cmake_parse_arguments" and len(words) >= 4:
             self._parse_arguments(words)
 
@@ -417,7 +417,7 @@ class CMakeProgram:
             else:
                 self._set(target, value)
 
-    def _matching(self, words: list[str], *, recursive: bool) -> str:
+    def _glob_files(self, words: list[str], *, recursive: bool) -> str:
         """Return the files that match the patterns of ``file(GLOB ...)``, as a CMake list."""
         base: str | None = None
         with_folders = not recursive
@@ -437,7 +437,7 @@ class CMakeProgram:
         found = {
             path.relative_to(self.package).as_posix()
             for pattern in patterns
-            for path in _globbed(self.package, pattern, recursive=recursive)
+            for path in _glob_paths(self.package, pattern, recursive=recursive)
             if with_folders or path.is_file()
         }
         if base is None:
@@ -509,7 +509,7 @@ def _range(words: Sequence[str]) -> range:
     return range(start, stop + 1, step) if step > 0 and stop - start < _MOST_COMMANDS else range(0)
 
 
-def _globbed(package: Path, pattern: str, *, recursive: bool) -> Iterable[Path]:
+def _glob_paths(package: Path, pattern: str, *, recursive: bool) -> Iterable[Path]:
     """Return the paths in a package that match a CMake pattern.
 
     As in CMake, ``**`` has the same meaning as ``*``.

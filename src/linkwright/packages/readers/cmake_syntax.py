@@ -1,4 +1,4 @@
-"""Parser for CMake files, which returns commands with their arguments, and blocks of commands."""
+"""Parser for CMake files, which returns commands with their arguments, and blocks."""
 
 from __future__ import annotations
 
@@ -127,7 +127,10 @@ def end_of_block(commands: Sequence[Statement], at: int, name: str) -> int:
 
 
 def branches(opening: Statement, body: Sequence[Statement]) -> Iterator[tuple[Statement | None, Sequence[Statement]]]:
-    """Yield the branches of an ``if``: the command with the condition (None for ``else``), and the body."""
+    """Yield the branches of an ``if``.
+
+    Each branch is the command with the condition, or None for ``else``, and the body.
+    """
     condition: Statement | None = opening
     depth = start = 0
     for index, command in enumerate(body):

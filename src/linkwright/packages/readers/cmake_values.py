@@ -94,16 +94,16 @@ def _changed(what: str, items: list[str], words: list[str]) -> list[str]:
     if what == "FILTER" and len(words) == 3 and words[1] == "REGEX":
         return [item for item in items if bool(_found(words[2], item)) == (words[0] == "INCLUDE")]
     if what == "TRANSFORM" and words:
-        return [_transformed(item, words) for item in items]
+        return [_transform_item(item, words) for item in items]
     raise _NotKnownError
 
 
-def _transformed(item: str, words: Sequence[str]) -> str:
+def _transform_item(item: str, words: Sequence[str]) -> str:
     what, *arguments = words
     if what in ("APPEND", "PREPEND") and len(arguments) == 1:
         return item + arguments[0] if what == "APPEND" else arguments[0] + item
     if what in ("TOLOWER", "TOUPPER", "STRIP") and not arguments:
-        return _cased(what, item)
+        return _convert_case(what, item)
     if what == "REPLACE" and len(arguments) == 2:
         return _replaced(arguments[0], arguments[1], item)
     raise _NotKnownError
@@ -138,7 +138,7 @@ def _string(what: str, args: list[str], value_of: Callable[[str], str]) -> tuple
     if what in ("CONCAT", "JOIN"):
         return (args[0], "".join(args[1:])) if what == "CONCAT" else (args[1], args[0].join(args[2:]))
     if what in ("TOLOWER", "TOUPPER", "STRIP"):
-        return args[1], _cased(what, args[0])
+        return args[1], _convert_case(what, args[0])
     if what == "LENGTH":
         return args[1], str(len(args[0].encode()))
     if what == "SUBSTRING":
@@ -149,7 +149,7 @@ def _string(what: str, args: list[str], value_of: Callable[[str], str]) -> tuple
     raise _NotKnownError
 
 
-def _cased(what: str, text: str) -> str:
+def _convert_case(what: str, text: str) -> str:
     return text.strip() if what == "STRIP" else text.lower() if what == "TOLOWER" else text.upper()
 
 
@@ -187,7 +187,7 @@ def _number(node: ast.expr) -> int:
     raise _NotKnownError
 
 
-def part_of_name(path: str, part: str) -> str:
+def filename_component(path: str, part: str) -> str:
     """Return the part of a path that ``get_filename_component`` extracts."""
     name = posixpath.basename(path)
     parts = {
@@ -205,7 +205,10 @@ def part_of_name(path: str, part: str) -> str:
 
 
 def version_variables(words: Sequence[str]) -> dict[str, str]:
-    """Return the version variables that ``project(...)`` sets, with empty values if there is no version."""
+    """Return the version variables that ``project(...)`` sets.
+
+    Their values are empty if there is no version.
+    """
     at = words.index("VERSION", 1) + 1 if "VERSION" in words[1:] else len(words)
     version = words[at] if at < len(words) else ""
     numbers = [*version.split("."), *[""] * 4]

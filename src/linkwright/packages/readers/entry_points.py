@@ -1,4 +1,7 @@
-"""Reader for entry points in the source files of a package: lines ``name = module:attribute`` of a group."""
+"""Reader for entry points in the source files of a package.
+
+An entry point is a line ``name = module:attribute`` of a group.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +36,7 @@ class EntryPoint(NamedTuple):
         return f"{self.module}:{self.function}"
 
 
-def in_setup_py(text: str, group: str) -> list[str]:
+def read_setup_py_group(text: str, group: str) -> list[str]:
     """Return the lines of a group in any dictionary of a ``setup.py``, which is not run."""
     with suppress(SyntaxError):
         for node in ast.walk(ast.parse(text)):
@@ -45,12 +48,12 @@ def in_setup_py(text: str, group: str) -> list[str]:
     return []
 
 
-def in_setup_cfg(text: str, group: str) -> list[str]:
+def read_setup_cfg_group(text: str, group: str) -> list[str]:
     """Return the lines of a group in a ``setup.cfg``."""
     return option_lines(text, "options.entry_points", group)
 
 
-def in_pyproject(text: str, group: str) -> list[str]:
+def read_pyproject_group(text: str, group: str) -> list[str]:
     """Return the lines of a group in a ``pyproject.toml``."""
     if sys.version_info >= (3, 11):
         import tomllib
@@ -64,7 +67,7 @@ def in_pyproject(text: str, group: str) -> list[str]:
         return []
 
 
-def in_metadata(text: str, group: str) -> list[str]:
+def read_metadata_group(text: str, group: str) -> list[str]:
     """Return the lines of a group in the ``entry_points.txt`` that a build writes."""
     from configparser import ConfigParser, Error
 

@@ -9,7 +9,7 @@ from contextlib import suppress
 from linkwright.diagnostics import SourceText, Span
 from linkwright.loading.lean_dataclasses import dataclass, field
 from linkwright.packages.readers.python_values import PythonFile, SharePath, argument_of, called_name
-from linkwright.packages.readers.setup_py import SyntaxMistake, syntax_mistake
+from linkwright.packages.readers.setup_py import SyntaxProblem, syntax_problem
 
 FUNCTION = "generate_launch_description"
 _TEST_FUNCTION = "generate_test_description"
@@ -65,7 +65,7 @@ class LaunchFile:
 
     source: SourceText
     path: str
-    error: SyntaxMistake | None = None
+    error: SyntaxProblem | None = None
     python: PythonFile | None = None
     has_function: bool = False
     is_test: bool = False
@@ -92,11 +92,13 @@ def read_launch_file(source: SourceText, path: str) -> LaunchFile:
     try:
         python = facts.python = PythonFile(source)
     except (SyntaxError, ValueError) as error:
-        facts.error = syntax_mistake(source, error)
+        facts.error = syntax_problem(source, error)
         return facts
     facts.has_function = any(map(_may_define_function, python.tree.body))
     _read_imports(python, facts)
-    facts.is_test = any(map(_is_of_test, python.tree.body)) or any(package in _TESTING for package, _ in facts.imports)
+    facts.is_test = any(map(_defines_test, python.tree.body)) or any(
+        package in _TESTING for package, _ in facts.imports
+    )
     for call in python.calls("Node", "LifecycleNode", "ComposableNode"):
         package, executable = argument_of(call, "package"), argument_of(call, "executable")
         facts.nodes.append(StartedNode(_place(python, package), _place(python, executable)))
@@ -120,7 +122,7 @@ def _may_define_function(node: ast.stmt) -> bool:
     return _defines_function(node, FUNCTION) or isinstance(node, (ast.If, ast.Try))  # a branch may define it
 
 
-def _is_of_test(node: ast.stmt) -> bool:
+def _defines_test(node: ast.stmt) -> bool:
     return _defines_function(node, _TEST_FUNCTION) or (
         isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)) and node.name.startswith("test_")
     )

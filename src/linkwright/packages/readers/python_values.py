@@ -79,7 +79,7 @@ class PythonFile:
 
     @cached_property
     def _assigned(self) -> dict[str, ast.expr | None]:
-        """Name -> the expression that is assigned to the name; None if there are several or the target is complex."""
+        """Name -> the expression assigned to it; None for several assignments or a complex target."""
         bindings: dict[str, ast.expr | None] = {}
         for node in ast.walk(self.tree):
             _note_bindings(node, bindings)
@@ -163,7 +163,7 @@ class PythonFile:
         return UNKNOWN
 
     def text(self, node: ast.expr | None) -> str | None:
-        """Return the string that an expression evaluates to, or None if the value is not a known string."""
+        """Return the string that an expression evaluates to, or None if it is not a known string."""
         value = self.value(node)
         return value if isinstance(value, str) else None
 
@@ -269,7 +269,7 @@ def called_name(node: ast.Call) -> str:
 
 
 def argument_of(node: ast.Call, name: str) -> ast.expr | None:
-    """Return the expression for a keyword argument of a call, or None if the argument is not given."""
+    """Return the expression for a keyword argument of a call, or None if it is not given."""
     return next((keyword.value for keyword in node.keywords if keyword.arg == name), None)
 
 

@@ -1,4 +1,4 @@
-"""Functions that an interpreted ``setup.py`` may call to construct paths or list its package's files.
+"""Functions that an interpreted ``setup.py`` may call to construct paths or list files.
 
 These functions open no file, access nothing outside the package, and return no large results.
 """

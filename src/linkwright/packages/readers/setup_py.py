@@ -18,14 +18,14 @@ from linkwright.packages.readers.installed_file import InstalledFile
 from linkwright.packages.readers.python_values import Pattern, PythonFile, argument_of, called_name
 
 
-class SyntaxMistake(NamedTuple):
+class SyntaxProblem(NamedTuple):
     """The reason why a file is not valid Python, and its location."""
 
     message: str
     span: Span
 
 
-class Installed(NamedTuple):
+class DataFile(NamedTuple):
     """A file or a pattern of files that is installed.
 
     Attributes:
@@ -52,7 +52,7 @@ class Installed(NamedTuple):
 
 
 class Program(NamedTuple):
-    """An executable: its name, the module and function that it runs, and the location of its definition."""
+    """An executable: its name, its module and function, and the location of its definition."""
 
     executable: str
     module: str
@@ -79,10 +79,10 @@ class SetupFile:
     def __init__(self, source: SourceText) -> None:
         self.source = source
         self.tree: ast.Module | None = None
-        self.error: SyntaxMistake | None = None
+        self.error: SyntaxProblem | None = None
         self.call = False
         self.name: tuple[str, Span] | None = None
-        self.installed: list[Installed] = []
+        self.installed: list[DataFile] = []
         self.data_files_span: Span | None = None
         self.is_complete = True
         self.packages: list[tuple[str, Span]] | None = None
@@ -114,7 +114,7 @@ def read_setup(source: SourceText) -> SetupFile:
     try:
         python = PythonFile(source)
     except (SyntaxError, ValueError) as error:
-        facts.error = syntax_mistake(source, error)
+        facts.error = syntax_problem(source, error)
         return facts
     facts.tree = python.tree
     call = next(python.calls("setup"), None)
@@ -136,12 +136,12 @@ def read_setup(source: SourceText) -> SetupFile:
     return facts
 
 
-def syntax_mistake(source: SourceText, error: SyntaxError | ValueError) -> SyntaxMistake:
+def syntax_problem(source: SourceText, error: SyntaxError | ValueError) -> SyntaxProblem:
     """Return the reason why a text is not valid Python, and its location."""
     if not isinstance(error, SyntaxError):
-        return SyntaxMistake(str(error), source.span(0))
+        return SyntaxProblem(str(error), source.span(0))
     start = source.offset(error.lineno or 1, max(error.offset or 1, 1))
-    return SyntaxMistake(error.msg, source.span(start, start + 1))
+    return SyntaxProblem(error.msg, source.span(start, start + 1))
 
 
 class _DataFilesReader:
@@ -159,7 +159,7 @@ class _DataFilesReader:
 
     def _entries(self, node: ast.expr) -> None:
         if isinstance(node, ast.Name):
-            self._entries_of_name(node)
+            self._read_entries_of_name(node)
         elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
             self._entries(node.left)
             self._entries(node.right)
@@ -169,7 +169,7 @@ class _DataFilesReader:
         else:
             self._facts.is_complete = False
 
-    def _entries_of_name(self, node: ast.Name) -> None:
+    def _read_entries_of_name(self, node: ast.Name) -> None:
         if node.id in self._names:
             return
         self._names.add(node.id)
@@ -178,7 +178,7 @@ class _DataFilesReader:
             self._facts.is_complete = False
         else:
             self._entries(value)
-            self._added_to(node.id)
+            self._read_additions(node.id)
 
     def _entry(self, node: ast.expr) -> None:
         if isinstance(node, ast.Starred):
@@ -212,9 +212,9 @@ class _DataFilesReader:
     def _add(self, text: str, destination: str | None, span: Span, pattern: Pattern | None) -> None:
         recursive = pattern is not None and pattern.recursive
         text = text.removeprefix("./")
-        self._facts.installed.append(Installed(text, pattern is not None, recursive, destination, span))
+        self._facts.installed.append(DataFile(text, pattern is not None, recursive, destination, span))
 
-    def _added_to(self, name: str) -> None:
+    def _read_additions(self, name: str) -> None:
         """Record the entries that ``name.append(...)``, ``name.extend(...)`` and ``name += ...`` add."""
         for node in ast.walk(self._python.tree):
             if isinstance(node, ast.Call) and called_name(node) in (f"{name}.append", f"{name}.extend"):

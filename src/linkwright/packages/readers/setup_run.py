@@ -1,4 +1,4 @@
-"""An interpreter for a ``setup.py`` that computes its ``data_files`` with loops and functions.
+"""An interpreter for a ``setup.py`` that computes ``data_files`` with loops and functions.
 
 Python does not run the file. The interpreter implements the necessary part of the language: assignments, loops,
 conditions, functions, and the library functions in `linkwright.packages.readers.setup_library`. An unknown value is
@@ -65,7 +65,7 @@ class _Named:
 
 
 class _CannotFollowError(Exception):
-    """Raised when the further execution depends on a value that is unknown or takes too long to compute."""
+    """Raised when the execution depends on a value that is unknown or too slow to compute."""
 
 
 class _LeaveError(Exception):
@@ -86,7 +86,9 @@ class _SetupCalledError(Exception):
 
 
 def run_setup(tree: ast.Module, folder: Path) -> list[InstalledFile] | None:
-    """Return the files that a ``setup.py`` installs as ``data_files``, or None if it cannot be interpreted.
+    """Return the files that a ``setup.py`` installs as ``data_files``.
+
+    The result is None if the file cannot be interpreted.
 
     Args:
         tree: the syntax tree of the file.
@@ -127,14 +129,14 @@ class _Run:
     def body(self, statements: Iterable[ast.stmt]) -> None:
         for statement in statements:
             self._tick()
-            self._statement(statement)
+            self._run_statement(statement)
 
     def _tick(self) -> None:
         self._steps += 1
         if self._steps > _MOST_STEPS:
             raise _CannotFollowError
 
-    def _statement(self, node: ast.stmt) -> None:
+    def _run_statement(self, node: ast.stmt) -> None:
         if isinstance(node, (ast.Import, ast.ImportFrom)):
             self._import(node)
         elif isinstance(node, ast.FunctionDef):

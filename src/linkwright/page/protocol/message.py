@@ -91,17 +91,17 @@ def encode(message: ServerMessage, language: str | None = None) -> str:
     try:
         return _encoder(language).encode(message).decode()
     except UnicodeEncodeError:
-        built = msgspec.to_builtins(message, enc_hook=partial(_plain_or_localized, language=language))
+        built = msgspec.to_builtins(message, enc_hook=partial(_to_plain_or_localized, language=language))
         text = json.dumps(built, ensure_ascii=False, separators=(",", ":"))
         return text.encode("utf-8", "replace").decode()
 
 
 @cache
 def _encoder(language: str | None) -> msgspec.json.Encoder:
-    return msgspec.json.Encoder(enc_hook=partial(_plain_or_localized, language=language))
+    return msgspec.json.Encoder(enc_hook=partial(_to_plain_or_localized, language=language))
 
 
-def _plain_or_localized(value: Any, language: str | None) -> Any:
+def _to_plain_or_localized(value: Any, language: str | None) -> Any:
     """Return a phrase in the language, or any other value as converted by `plain`."""
     return plain(translate_phrase(value, language) if language is not None and isinstance(value, Phrase) else value)
 

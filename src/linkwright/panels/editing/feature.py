@@ -97,7 +97,7 @@ class EditingFeature(PageFeature):
 
     async def _preview(self, page: Page, message: editing.PreviewEdit) -> None:
         robot, known = self._known_robot(page, message.display)
-        why_not = _why_not(robot, known)
+        why_not = _refusal_reason(robot, known)
         if known is None or why_not is not None:
             raise EditRefusedError(Diagnostic("EDIT101", why_not or phrase("there is no robot")))
         for given in (message.xyz, message.rpy):
@@ -111,7 +111,7 @@ class EditingFeature(PageFeature):
 
     def _parts(self, page: Page, message: editing.AskEditableParts) -> editing.EditableParts:
         robot, known = self._known_robot(page, message.display)
-        why_not = _why_not(robot, known) if page.is_here else _elsewhere().message
+        why_not = _refusal_reason(robot, known) if page.is_here else _elsewhere().message
         parts = [] if robot is None else parts_of(robot, message.link)
         problem = "" if why_not is None else item_of(Diagnostic("EDIT101", why_not)).message
         return editing.EditableParts(message.display, message.link, problem, parts)
@@ -139,7 +139,7 @@ def _planned(known: Description, message: editing.PreviewEdit) -> EditPlan:
     return plan_edit(read_again(known), request_of(message), Workspace(Path(known.name)).refusal)
 
 
-def _why_not(robot: Robot | None, known: Description | None) -> Phrase | None:
+def _refusal_reason(robot: Robot | None, known: Description | None) -> Phrase | None:
     if robot is None:
         return phrase("there is no robot")
     if known is not None and known.document.root.tag == "sdf":

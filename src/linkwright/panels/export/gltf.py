@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from linkwright._version import __version__
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, display_path, missing_extra, phrase
 from linkwright.geometry.mesh_files import BadMeshError
-from linkwright.geometry.mesh_parts import UNCOLOURED, MeshPart, OwnLook, read_parts
+from linkwright.geometry.mesh_parts import UNCOLOURED, FileMaterial, MeshPart, read_parts
 from linkwright.geometry.single import normalized
 from linkwright.nodes.robot_state_publisher import JointMotion
 from linkwright.page.files import FileRefusedError
@@ -226,7 +226,7 @@ class _RobotWriter:
         except FileRefusedError:
             raise _unreadable(link, urlsplit(url).path, phrase("it does not exist, or cannot be read")) from None
         try:
-            return read_parts(path, resolver=_Neighbours(self._files, url))
+            return read_parts(path, resolver=_NeighbourFiles(self._files, url))
         except BadMeshError as error:
             raise _unreadable(link, display_path(path), error.why) from None
 
@@ -277,7 +277,7 @@ class _RobotWriter:
         return self._materials[look]
 
 
-class _Neighbours:
+class _NeighbourFiles:
     """Provides trimesh with the files next to a mesh, under the same access rules as for pages."""
 
     def __init__(self, files: FileSet, url: str) -> None:
@@ -310,7 +310,7 @@ def _look(shape: Shape, part: MeshPart, texture: bytes | None) -> _Look:
         grey = is_mesh and not (shape.format or "").startswith("stl")
         bare = (UNCOLOURED,) * 3 if grey else _RVIZ_RED
         red, green, blue = (1.0, 1.0, 1.0) if texture else tuple(shape.color[:3]) if shape.color else bare
-        own = OwnLook((red, green, blue), texture)
+        own = FileMaterial((red, green, blue), texture)
     image = own.image if part.triangles.coordinates is not None else None
     return _Look(own.color, float(alpha), image, is_mesh, part.triangles.colors is not None)
 

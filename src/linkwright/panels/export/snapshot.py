@@ -294,7 +294,7 @@ def take_snapshot(
     messages: list[ServerMessage] = []
     for message in opening:
         if isinstance(message, Tree):
-            messages.append(_anonymous(message))
+            messages.append(_without_details(message))
         elif isinstance(message, RobotScene):
             messages.append(replace(message, links=[replace(link, place=None) for link in message.links]))
         elif isinstance(message, ComparedDescriptions):
@@ -353,7 +353,7 @@ def _poses(table: FrameTable, frames: Sequence[bytes]) -> dict[str, NDArray[np.f
     return {}
 
 
-def _anonymous(tree: Tree) -> Tree:
+def _without_details(tree: Tree) -> Tree:
     """Return the displays without status and paths, which reveal details of this machine."""
     displays: list[Display] = [
         replace(display, status=[], level="ok", properties=_without_paths(display.properties))

@@ -313,13 +313,13 @@ class ParametersFeature(PageFeature):
         listed = ParameterNodes([name.removesuffix(_LIST) for name in services if name.endswith(_LIST)])
         for page, request in self._requests.items():
             if request.listed and request.sent != listed:
-                back = self._returned(request, listed)
+                back = self._reappeared_node(request, listed)
                 request.sent = listed
                 page.send(listed)
                 if back is not None:
                     back.refresh()
 
-    def _returned(self, request: _Request, listed: ParameterNodes) -> RemoteNode | None:
+    def _reappeared_node(self, request: _Request, listed: ParameterNodes) -> RemoteNode | None:
         """Return the node that the page watches if it was not in the list sent before, or None."""
         if (
             request.sent is None

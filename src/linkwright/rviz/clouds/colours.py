@@ -85,9 +85,9 @@ def coloured(
             Frame.
     """
     if settings.transformer == INTENSITY:
-        return _by_intensity(points, settings)
+        return _colour_by_intensity(points, settings)
     if settings.transformer == AXIS:
-        return _by_axis(points, settings, pose)
+        return _colour_by_axis(points, settings, pose)
     if settings.transformer == RGB8:
         return _unpacked(points), None
     if settings.transformer == RGBF32:
@@ -98,7 +98,7 @@ def coloured(
     return np.empty((0, 4), np.uint8), None
 
 
-def _by_intensity(points: Points, settings: ColourSettings) -> tuple[Colours, tuple[float, float] | None]:
+def _colour_by_intensity(points: Points, settings: ColourSettings) -> tuple[Colours, tuple[float, float] | None]:
     values = points.values(settings.channel)
     if values is None and settings.channel == "intensity":
         values = points.values("intensities")
@@ -113,10 +113,10 @@ def _by_intensity(points: Points, settings: ColourSettings) -> tuple[Colours, tu
         table = rainbow()[::-1] if not settings.inverted else rainbow()
     else:
         table = _mixed(settings.darkest, settings.brightest)
-    return _looked_up(table, values, least, span), computed
+    return _colours_from_table(table, values, least, span), computed
 
 
-def _by_axis(
+def _colour_by_axis(
     points: Points, settings: ColourSettings, pose: NDArray[np.float64] | None
 ) -> tuple[Colours, tuple[float, float] | None]:
     if settings.in_fixed_frame and pose is not None:
@@ -128,7 +128,7 @@ def _by_axis(
     if settings.values is None:
         computed = _bounds(values, 9999.0)
     least, largest = computed or settings.values or (0.0, 0.0)
-    return _looked_up(rainbow()[::-1], values, least, largest - least or 0.001), computed
+    return _colours_from_table(rainbow()[::-1], values, least, largest - least or 0.001), computed
 
 
 def _bounds(values: NDArray[Any], limit: float) -> tuple[float, float]:
@@ -144,7 +144,7 @@ def _bounds(values: NDArray[Any], limit: float) -> tuple[float, float]:
     return max(-limit, least), min(limit, largest)
 
 
-def _looked_up(table: NDArray[np.uint32], values: NDArray[Any], least: float, span: float) -> Colours:
+def _colours_from_table(table: NDArray[np.uint32], values: NDArray[Any], least: float, span: float) -> Colours:
     steps = len(table) - 1
     with np.errstate(all="ignore"):
         place = values.astype(np.float32) if values.dtype != np.float32 else values

@@ -73,7 +73,7 @@ class DepthCloudBuilder:
     """
 
     def __init__(self) -> None:
-        self._hidden: _Hidden | None = None
+        self._hidden: _CoveredPoints | None = None
 
     def reset(self) -> None:
         """Discard the covered points, because the camera moved or restarted."""
@@ -102,7 +102,7 @@ class DepthCloudBuilder:
             BadCloudError: the image's encoding is not supported, its data is too short, or its size differs from the
                 colour image's.
         """
-        metres, valid = _metres(depth)
+        metres, valid = _read_depths(depth)
         if colour is not None and (colour.width, colour.height) != (depth.width, depth.height):
             raise BadCloudError(
                 phrase(
@@ -131,7 +131,9 @@ class DepthCloudBuilder:
     ) -> Points:
         hidden = self._hidden
         if hidden is None or hidden.metres.shape != metres.shape:
-            hidden = self._hidden = _Hidden(np.zeros_like(metres), np.zeros_like(colours), np.zeros(metres.shape))
+            hidden = self._hidden = _CoveredPoints(
+                np.zeros_like(metres), np.zeros_like(colours), np.zeros(metres.shape)
+            )
         hidden.metres[hidden.seen < now - timeout] = 0.0
         covering = valid & (metres < hidden.metres - _SHADOW_DISTANCE)
         shown = (hidden.metres != 0.0) & (covering | ~valid)
@@ -148,13 +150,13 @@ class DepthCloudBuilder:
 
 
 @dataclass(slots=True)
-class _Hidden:
+class _CoveredPoints:
     metres: NDArray[np.float32]
     colours: NDArray[np.uint32]
     seen: NDArray[np.float64]
 
 
-def _metres(image: Any) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
+def _read_depths(image: Any) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
     """Return the depths in metres, shape (height, width), and a mask of the valid ones."""
     kinds = {"32FC1": "f4", "16UC1": "u2", "mono16": "u2"}
     kind = kinds.get(image.encoding)

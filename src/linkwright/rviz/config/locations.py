@@ -138,7 +138,7 @@ _UNNAMED = "untitled"
 _UNFIT = re.compile(r"[^\w. -]+|^\.+")
 _LONGEST_NAME = 56
 """Characters, of which a file system may count four bytes each."""
-_HOW = phrase("open that file in the page, or with 'rviz2 -d'")
+_RECOVERY_HINT = phrase("open that file in the page, or with 'rviz2 -d'")
 
 
 def recovery_folder() -> Path:
@@ -154,9 +154,11 @@ def recovery_file(config: RvizConfig) -> Path:
     folder = recovery_folder()
     if config.path is not None:
         path = _absolute(config.path)
-        return folder / path.name if path.parent == _absolute(folder) else folder / _name_for(str(path))
+        return folder / path.name if path.parent == _absolute(folder) else folder / _recovery_file_name(str(path))
     name = config.document.source.name
-    return folder / (f"{_UNNAMED}{ENDING}" if name.startswith("<") else _name_for(name))  # such as "<default>"
+    return folder / (
+        f"{_UNNAMED}{ENDING}" if name.startswith("<") else _recovery_file_name(name)
+    )  # such as "<default>"
 
 
 def keep_unsaved(configs: Iterable[RvizConfig]) -> list[Diagnostic]:
@@ -195,12 +197,12 @@ def find_unsaved(config: RvizConfig) -> list[Diagnostic]:
         "earlier unsaved changes of '{path}' are in '{kept}': {how}",
         path=config.path,
         kept=path,
-        how=_HOW,
+        how=_RECOVERY_HINT,
     )
     return [Diagnostic("RVIZ302", message, severity=Severity.INFO)]
 
 
-def forget_unsaved(former: Path | None, config: RvizConfig, recent: RecentFiles) -> None:
+def remove_recovery_files(former: Path | None, config: RvizConfig, recent: RecentFiles) -> None:
     """Remove the recovery files of a configuration that has just been saved.
 
     Args:
@@ -222,13 +224,13 @@ def forget_unsaved(former: Path | None, config: RvizConfig, recent: RecentFiles)
 
 def _stored_finding(config: RvizConfig, path: Path) -> Diagnostic:
     if config.path is None or _absolute(config.path) == _absolute(path):
-        message = phrase("unsaved displays are stored in '{path}': {how}", path=path, how=_HOW)
+        message = phrase("unsaved displays are stored in '{path}': {how}", path=path, how=_RECOVERY_HINT)
     else:
         message = phrase(
             "unsaved changes of '{path}' are stored in '{kept}': {how}",
             path=config.path,
             kept=path,
-            how=_HOW,
+            how=_RECOVERY_HINT,
         )
     return Diagnostic("RVIZ301", message, severity=Severity.WARNING)
 
@@ -243,7 +245,7 @@ def _is_saved(config: RvizConfig, text: str) -> bool:
         return False
 
 
-def _name_for(name: str) -> str:
+def _recovery_file_name(name: str) -> str:
     """Return a safe recovery file name for a configuration name, which a page may have chosen."""
     mark = hashlib.sha256(os.fsencode(name)).hexdigest()[:8]  # files of the same name in different folders
     stem = _UNFIT.sub("_", Path(name).stem)[:_LONGEST_NAME]

@@ -131,7 +131,7 @@ class PanelsConfig:
         name = section.text("Name") or ""
         state = self._document.text(*_STATE) or ""
         if is_shown(state, name) not in (None, shown):
-            self._document.put(_STATE, with_shown(state, name, shown=shown))
+            self._document.put(_STATE, set_dock_shown(state, name, shown=shown))
         if self._is_on(_GEOMETRY, name, "collapsed"):
             self._document.put((_GEOMETRY, name, "collapsed"), "false")
 
@@ -176,7 +176,7 @@ def is_shown(state: str, name: str) -> bool | None:
     return None if at is None else bool(content[at] & _SHOWN)
 
 
-def with_shown(state: str, name: str, *, shown: bool) -> str:
+def set_dock_shown(state: str, name: str, *, shown: bool) -> str:
     """Return the window state with a dock shown or hidden; unchanged if it has no such dock."""
     content = _bytes(state)
     at = _flags(content, name)

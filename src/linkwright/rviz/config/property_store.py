@@ -9,8 +9,8 @@ from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.graph import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from linkwright.page.protocol.configuration import Property, PropertyChanged, PropertyValue, TopicOffer
 from linkwright.rviz.config.former_names import FormerKey
-from linkwright.rviz.config.schema import Path, PropertySpec, Schema, accept, from_text, in_place_of, to_text
-from linkwright.rviz.config.yaml_tree import Memory, NewSection, Scalar, Section, make_section, unmake
+from linkwright.rviz.config.schema import Path, PropertySpec, Schema, accept, fallback_value, from_text, to_text
+from linkwright.rviz.config.yaml_tree import Memory, NewSection, Scalar, Section, make_section, remove_unchanged
 
 _MANY = 30
 """From so many properties beside each other on, an index finds them by name."""
@@ -133,8 +133,8 @@ class PropertyStore:
         place = self._place()
         for memory in memories:
             place.recall(memory)
-        self._new_sections = unmake(self._new_sections)
-        old = {path: value for path, value in self._values.items() if self._key(path) in keys and self._is_kept(path)}
+        self._new_sections = remove_unchanged(self._new_sections)
+        old = {path: value for path, value in self._values.items() if self._key(path) in keys and self._is_stored(path)}
         for path in old:
             del self._values[path]
         return [path for path, value in old.items() if self.get(*path) != value]
@@ -163,7 +163,7 @@ class PropertyStore:
 
     def is_condition(self, path: Path) -> bool:
         """Return whether the value at a path decides which other rows are shown."""
-        return any(_depends(spec, path) for spec in self._schema())
+        return any(_depends_on(spec, path) for spec in self._schema())
 
     def frame_changes(self) -> list[PropertyChanged]:
         """Return a change message for each ``frame`` property, with the frame names that it offers now."""
@@ -220,7 +220,7 @@ class PropertyStore:
         try:
             return from_text(spec, scalar.text)
         except ValueError as error:
-            value = in_place_of(spec)
+            value = fallback_value(spec)
             message = phrase("'{name}': {error}; {value} is used", name=spec.name, error=error, value=repr(value))
             self._report(Diagnostic("RVIZ201", message, scalar.span, Severity.WARNING, source=self._section.source))
             return value
@@ -258,7 +258,7 @@ class PropertyStore:
         former = self._former_key(path)
         return former.key if former else path[0]
 
-    def _is_kept(self, path: Path) -> bool:
+    def _is_stored(self, path: Path) -> bool:
         """Return whether the schema has the property and the file stores it, unlike a read-only one."""
         try:
             return not self._spec(path).read_only
@@ -286,9 +286,9 @@ class PropertyStore:
         return found
 
 
-def _depends(spec: PropertySpec, path: Path) -> bool:
+def _depends_on(spec: PropertySpec, path: Path) -> bool:
     condition = spec.when is not None and spec.when[0] == path
-    return condition or any(_depends(child, path) for child in spec.children)
+    return condition or any(_depends_on(child, path) for child in spec.children)
 
 
 def qos_of(properties: PropertyStore, name: str = "Topic", *, lasting: bool | None = None) -> QoSProfile:

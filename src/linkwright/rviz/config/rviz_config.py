@@ -218,7 +218,7 @@ def place(display: DisplayConfig, parent: Section, siblings: list[DisplayConfig]
     siblings.insert(index, display)
 
 
-def displace(display: DisplayConfig, parent: Section, siblings: list[DisplayConfig]) -> None:
+def remove_display(display: DisplayConfig, parent: Section, siblings: list[DisplayConfig]) -> None:
     """Remove a display from its list of siblings and from the file."""
     yaml_tree.remove_section(parent, _KEY, display.section)
     siblings.remove(display)
@@ -283,7 +283,7 @@ class RvizConfig:
         self.tools = ToolsConfig(document, self.warnings.append)
         self.panels = PanelsConfig(document, self.warnings.append)
         self._unchosen_view: View | None = None
-        self._proposed: _Proposed | None = None
+        self._proposed: _ProposedSizes | None = None
 
     @classmethod
     def load(cls, path: str | Path) -> RvizConfig:
@@ -350,7 +350,7 @@ class RvizConfig:
                 display_config.section.put(path, f"{length:g}")
             view.values |= {"Distance": size.distance, "Focal Shape Size": size.focal_shape}
         config.propose_view(view.values)
-        config._proposed = _Proposed(config.displays, size)
+        config._proposed = _ProposedSizes(config.displays, size)
         return config
 
     def propose_view(self, values: Mapping[str, Any]) -> None:
@@ -379,19 +379,19 @@ class RvizConfig:
 
     @property
     def awaits_size(self) -> bool:
-        """Whether `sizes_for` still has sizes to set, because no page has measured the robot yet."""
+        """Whether `take_sizes` still has sizes to set, because no page has measured the robot yet."""
         return self._proposed is not None
 
     @property
     def spacing(self) -> float | None:
         """The typical distance in m between the frames of a link and its parent; None if it is unknown.
 
-        The distance is also None after `sizes_for` was called.
+        The distance is also None after `take_sizes` was called.
         """
         size = None if self._proposed is None else self._proposed.size
         return None if size is None else size.spacing
 
-    def sizes_for(self, diagonal: float, ground: float = 0.0) -> list[tuple[DisplayConfig, PropertyPath, float]]:
+    def take_sizes(self, diagonal: float, ground: float = 0.0) -> list[tuple[DisplayConfig, PropertyPath, float]]:
         """Return the sizes of grid and axes that fit a robot which a page has just measured.
 
         Each item is a display, the path of a property and its new value. Properties that the user has changed are
@@ -450,7 +450,7 @@ class RvizConfig:
 
     def remove(self, display: DisplayConfig) -> None:
         """Remove a display from its group or the top level, and from the file."""
-        displace(display, self._parent(display.group), self.siblings(display.group))
+        remove_display(display, self._parent(display.group), self.siblings(display.group))
 
     def make_group(self, name: str) -> DisplayConfig:
         """Return an empty group; `insert` puts it into the file."""
@@ -471,7 +471,7 @@ class RvizConfig:
             for display in displays:
                 display.group = group
             yaml_tree.recall_sequence(self._parent(group), "Displays", arrangement.memories[group])
-        self._new_sections = yaml_tree.unmake(self._new_sections)
+        self._new_sections = yaml_tree.remove_unchanged(self._new_sections)
 
     def siblings(self, group: DisplayConfig | None) -> list[DisplayConfig]:
         """Return the displays in a group, or the top-level displays if `group` is None."""
@@ -523,7 +523,7 @@ class RvizConfig:
         return self.path is not None and configuration_file.state_of(self.path) not in (self._state, None)
 
 
-class _Proposed:
+class _ProposedSizes:
     """The proposed sizes of grid and axes for a robot whose meshes are not yet measured.
 
     Args:
@@ -543,10 +543,10 @@ class _Proposed:
         found = _sizes(self._displays, ModelSize(diagonal, spacing), ground)
         return [change for change in found if change[0].section.text(*change[1]) == self._texts[change[1]]]
 
-    def among(self, copies: Mapping[DisplayConfig, DisplayConfig]) -> _Proposed | None:
+    def among(self, copies: Mapping[DisplayConfig, DisplayConfig]) -> _ProposedSizes | None:
         """Return the same proposal for copies of the displays, or None if a display was removed."""
         found = [copies[display] for display in self._displays if display in copies]
-        return _Proposed(found, self.size) if len(found) == len(self._displays) else None
+        return _ProposedSizes(found, self.size) if len(found) == len(self._displays) else None
 
 
 _ANY_SIZE = ModelSize(1.0, 1.0)

@@ -103,7 +103,7 @@ def length(name: str, default: float, description: str, when: tuple[Path, str] |
     return PropertySpec(name, "float", default, description, when=when)
 
 
-def line_style(*children: PropertySpec) -> PropertySpec:
+def line_style_spec(*children: PropertySpec) -> PropertySpec:
     """Return the declaration of ``Line Style``: lines of one pixel, or billboards with a width."""
     return PropertySpec(
         "Line Style",
@@ -115,7 +115,7 @@ def line_style(*children: PropertySpec) -> PropertySpec:
     )
 
 
-def line_width() -> PropertySpec:
+def line_width_spec() -> PropertySpec:
     """Return the declaration of ``Line Width`` in metres, which is shown for billboards."""
     return PropertySpec("Line Width", "float", 0.03, "Width of the lines, in metres.", minimum=0.001, when=BILLBOARDS)
 
@@ -130,7 +130,7 @@ def accept(spec: PropertySpec, value: object) -> PropertyValue:
     """
     if spec.read_only:
         raise ValueError("only the program sets it")
-    taken = _validated(spec, value)
+    taken = _validate(spec, value)
     if taken is None:
         raise ValueError(
             phrase(
@@ -151,7 +151,7 @@ def from_text(spec: PropertySpec, text: str) -> PropertyValue:
     return accept(spec, _converted(spec, text.strip()))
 
 
-def in_place_of(spec: PropertySpec) -> PropertyValue:
+def fallback_value(spec: PropertySpec) -> PropertyValue:
     """Return the value that replaces an invalid text in a file: true for a ``bool``, else the default.
 
     To Qt, and so to RViz, every text is true except ``false``, ``0`` and an empty one: ``no`` is true.
@@ -160,7 +160,7 @@ def in_place_of(spec: PropertySpec) -> PropertyValue:
 
 
 def is_on(text: str) -> bool:
-    """Return whether RViz reads the text of a check box in a file as true, see `in_place_of`."""
+    """Return whether RViz reads the text of a check box in a file as true, see `fallback_value`."""
     return _BOOLEANS.get(text.strip().lower(), True)
 
 
@@ -190,7 +190,7 @@ _EXPECTED = {
 }
 
 
-def _validated(spec: PropertySpec, value: object) -> PropertyValue:
+def _validate(spec: PropertySpec, value: object) -> PropertyValue:
     kind = spec.kind
     if kind == "bool":
         return value if isinstance(value, bool) else None
@@ -231,13 +231,13 @@ def _converted(spec: PropertySpec, text: str) -> object:
     if kind == "bool":
         return _BOOLEANS.get(text.lower(), text)
     if kind in ("int", "float"):
-        return _spelt_number(spec, text)
+        return _parse_number(spec, text)
     if kind == "color":
-        return _spelt_colour(text)
+        return _parse_colour(text)
     return text
 
 
-def _spelt_number(spec: PropertySpec, text: str) -> object:
+def _parse_number(spec: PropertySpec, text: str) -> object:
     if "_" in text or not text.isascii():
         return text  # Python accepts these numbers, but Qt does not
     try:
@@ -249,7 +249,7 @@ def _spelt_number(spec: PropertySpec, text: str) -> object:
     return number if math.isfinite(number) else math.copysign(_INFINITE, number)
 
 
-def _spelt_colour(text: str) -> str:
+def _parse_colour(text: str) -> str:
     found = _RVIZ_COLOUR.fullmatch(text)
     if found:  # ignore a fourth part, such as an alpha
         return "#" + "".join(f"{min(max(int(part), 0), 255):02x}" for part in found.groups()[:3])

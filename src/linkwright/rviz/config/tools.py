@@ -170,7 +170,7 @@ class ToolsConfig:
             raise ValueError(f"there are {MAXIMUM_TOOLS} tools already")
         if cls not in TOOL_KINDS:
             raise ValueError(f"no tool is of the class {cls!r}")
-        self.list_all()
+        self.write_defaults()
         section = self._new(cls)
         insert_section(self._manager(), _TOOLS, section)
         return self._remember(cls, section)
@@ -182,12 +182,12 @@ class ToolsConfig:
             KeyError: there is no such tool.
         """
         entry = self._entries[identity]
-        self.list_all()
+        self.write_defaults()
         del self._entries[identity]
         remove_section(self._manager(), _TOOLS, entry.section)
         return entry
 
-    def list_all(self) -> None:
+    def write_defaults(self) -> None:
         """Write the default tools to a file that lists none, before one of them is changed."""
         if not self._are_listed:
             for entry in self._entries.values():

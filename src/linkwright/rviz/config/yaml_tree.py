@@ -166,13 +166,13 @@ def parse(text: str, name: str) -> Section:
         hint = phrase("an RViz configuration begins with 'Panels:' and 'Visualization Manager:'")
         raise LinkwrightError(Diagnostic("RVIZ103", message, source.span(0, 0), hint=hint, source=source))
     if "*" in text:
-        _write_out_aliases(root, source)
+        _expand_aliases(root, source)
     return Section(root, source)
 
 
 def write(section: Section) -> str:
     """Return the document as text, preserving key order, scalars and layout of the source."""
-    return _laid_out(section.node, section.source.text)
+    return _text_in_layout(section.node, section.source.text)
 
 
 def same(one: Section, other: Section) -> bool:
@@ -250,7 +250,7 @@ def recall_sequence(parent: Section, key: str, memory: SequenceMemory) -> None:
 
 @dataclass(frozen=True, slots=True)
 class NewSection:
-    """A mapping that was created on demand, for `unmake`.
+    """A mapping that was created on demand, for `remove_unchanged`.
 
     Attributes:
         holder: the mapping that contains the new one.
@@ -278,7 +278,7 @@ def make_section(section: Section, *path: str) -> tuple[Section, list[NewSection
     return section, new_sections
 
 
-def unmake(new_sections: list[NewSection]) -> list[NewSection]:
+def remove_unchanged(new_sections: list[NewSection]) -> list[NewSection]:
     """Remove new mappings that have no added keys, and return the others.
 
     The mappings are removed from the last to the first, until one of them has added keys.
@@ -368,7 +368,7 @@ def _check_depth(text: str, source: SourceText) -> None:
             depth -= 1
 
 
-def _write_out_aliases(root: yaml.Node, source: SourceText) -> None:
+def _expand_aliases(root: yaml.Node, source: SourceText) -> None:
     """Replace each alias with a copy of its node, so that an edit of one does not change the others."""
     seen: set[int] = set()
     count = 0
@@ -419,19 +419,19 @@ _EMPTY_BELOW = re.compile(r"^ +\{\}\r?$", re.MULTILINE)
 _INDENTED_ITEMS = re.compile(r"^( *)[^\s#-][^\n]*:[ \r]*\n\1 +- ", re.MULTILINE)
 
 
-def _laid_out(node: yaml.Node, source: str) -> str:
+def _text_in_layout(node: yaml.Node, source: str) -> str:
     """Return a node as text in the layout of a source text."""
     if not _INDENTED_ITEMS.search(source):
         return _plain(node)
-    return _serialized(node, _RvizDumper if _EMPTY_BELOW.search(source) else _IndentingDumper)
+    return _serialize(node, _RvizDumper if _EMPTY_BELOW.search(source) else _IndentingDumper)
 
 
 def _plain(node: yaml.Node) -> str:
     """Return a document as text in libyaml's default layout, which is fast."""
-    return _serialized(node, _PlainDumper)
+    return _serialize(node, _PlainDumper)
 
 
-def _serialized(node: yaml.Node, dumper: Any) -> str:
+def _serialize(node: yaml.Node, dumper: Any) -> str:
     text: str = yaml.serialize(node, Dumper=dumper, width=_ENDLESS, allow_unicode=True)
     return text
 

@@ -38,7 +38,7 @@ class DetectorThreshold:
         """Set the minimum score at the node that publishes a topic, if that node has such a parameter."""
         self._wish = topic, value
         if self._task is None or self._task.done():
-            self._task = asyncio.get_running_loop().create_task(self._fulfil())
+            self._task = asyncio.get_running_loop().create_task(self._send_requests())
 
     def close(self) -> None:
         """Cancel pending requests."""
@@ -47,7 +47,7 @@ class DetectorThreshold:
             self._task.cancel()
             self._task = None
 
-    async def _fulfil(self) -> None:
+    async def _send_requests(self) -> None:
         while self._wish is not None:
             (topic, value), self._wish = self._wish, None
             outcome = await self._set(topic, value)

@@ -8,7 +8,16 @@ from typing import TYPE_CHECKING
 from linkwright.diagnostics import Phrase, foreign, phrase
 from linkwright.page.protocol.configuration import PropertyChanged, StatusRow
 from linkwright.rviz.config.rviz_config import DisplayConfig
-from linkwright.rviz.config.schema import FIXED_FRAME, Path, PropertySpec, Schema, alpha, line_style, line_width, vector
+from linkwright.rviz.config.schema import (
+    FIXED_FRAME,
+    Path,
+    PropertySpec,
+    Schema,
+    alpha,
+    line_style_spec,
+    line_width_spec,
+    vector,
+)
 from linkwright.rviz.displays.base.display import DisplayHost, ViewerDisplay
 from linkwright.rviz.frames.stream import transform_status
 
@@ -62,7 +71,7 @@ class GridDisplay(ViewerDisplay):
             maximum=100,
         ),
         PropertySpec("Cell Size", "float", 1.0, "Side of a cell, in metres.", minimum=0.0001),
-        line_style(line_width()),
+        line_style_spec(line_width_spec()),
         PropertySpec("Color", "color", "#a0a0a4", "Colour of the lines."),
         alpha("Opacity of the lines: 0 is invisible.", 0.5),
         PropertySpec("Plane", "enum", "XY", "The plane of the grid.", options=("XY", "XZ", "YZ")),

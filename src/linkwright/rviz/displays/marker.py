@@ -17,7 +17,7 @@ from linkwright.rviz.displays.base.display import DisplayHost, Pose
 from linkwright.rviz.displays.base.stored_markers import StoredMarkersDisplay
 from linkwright.rviz.displays.base.topic_display import TOPIC
 from linkwright.rviz.markers import BadMarkerError, MarkerReading, read_marker
-from linkwright.rviz.markers.shapes import ADD, DELETE, DELETE_ALL, marker_id, placed_in
+from linkwright.rviz.markers.shapes import ADD, DELETE, DELETE_ALL, marker_id, marker_pose
 
 _NAMESPACES = "Namespaces"
 _SHORTEST_LIFE_NS = 100_000
@@ -189,7 +189,7 @@ class MarkerDisplay(StoredMarkersDisplay):
         if marker.locked:
             shape.frame, shape.pose = marker.frame, list(marker.reading.pose)
         else:
-            shape.frame, shape.pose = "", placed_in(frame, marker.reading)
+            shape.frame, shape.pose = "", marker_pose(frame, marker.reading)
         self._store.put(shape)
 
     def _frame_pose(self, fixed_frame: str, frame: str, stamp_ns: int) -> Transform:

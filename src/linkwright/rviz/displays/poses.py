@@ -17,8 +17,8 @@ from linkwright.rviz.config.schema import (
     Schema,
     alpha,
     length,
-    line_style,
-    line_width,
+    line_style_spec,
+    line_width_spec,
     topic_spec,
     vector,
 )
@@ -283,8 +283,8 @@ class PathDisplay(RecentDisplay):
     LENGTH = ("Buffer Length",)
     SCHEMA = (
         topic_spec(description=MESSAGE, filter_size=10),
-        line_style(),
-        line_width(),
+        line_style_spec(),
+        line_width_spec(),
         PropertySpec("Color", "color", "#19ff00", "Colour of the lines."),
         alpha("Opacity of the lines."),
         PropertySpec("Buffer Length", "int", 1, "The number of paths that are shown.", minimum=1),

@@ -287,7 +287,7 @@ class FrameStream:
         self._buffer.clear()
         self.refresh()
 
-    def look_soon(self) -> None:
+    def schedule_update(self) -> None:
         """Schedule an update as soon as the rate allows."""
         self._wake()
 
@@ -349,13 +349,13 @@ class FrameStream:
         self._looked_at = self._loop.time()
         fixed_frame = self.fixed_frame
         snapshot = self._snapshot(fixed_frame, self._paused_ns or self._clock.now_ns())
-        poses, ages = self._poses_then(snapshot, fixed_frame), snapshot.ages
-        alone = fixed_frame not in snapshot.names and self._stands_alone(fixed_frame)
+        poses, ages = self._poses_to_show(snapshot, fixed_frame), snapshot.ages
+        alone = fixed_frame not in snapshot.names and self._is_unconnected(fixed_frame)
         if alone:
             poses, ages = np.concatenate([poses, _IDENTITY]), np.append(ages, 0.0)
         changed = self._compare_structure(snapshot, fixed_frame if alone else None)
         rows = poses.astype(np.float32)
-        if changed or self._is_news(rows, ages):
+        if changed or self._has_changed(rows, ages):
             self._send(rows, ages)
         self._notify_displays(snapshot, rows, fixed_frame, changed=changed)
 
@@ -368,12 +368,12 @@ class FrameStream:
         snapshot = self._buffer.snapshot(own.parent, now_ns)
         return replace(snapshot, poses=compose(own.pose, snapshot.poses))
 
-    def _stands_alone(self, frame: str) -> bool:
+    def _is_unconnected(self, frame: str) -> bool:
         """Return whether a robot or display has the frame, and no tf frame is connected to it."""
         own = self._history.own(frame)
         return frame in self._own_frames() or (own is not None and own.parent is None)
 
-    def _poses_then(self, snapshot: FrameSnapshot, fixed_frame: str) -> NDArray[np.float64]:
+    def _poses_to_show(self, snapshot: FrameSnapshot, fixed_frame: str) -> NDArray[np.float64]:
         """Return the poses of frames at the time to be shown.
 
         A frame whose pose at that time is unknown has its latest pose.
@@ -409,7 +409,7 @@ class FrameStream:
         self._pages.publish(self._table)
         return True
 
-    def _is_news(self, poses: NDArray[np.float32], ages: NDArray[np.float64]) -> bool:
+    def _has_changed(self, poses: NDArray[np.float32], ages: NDArray[np.float64]) -> bool:
         if poses.tobytes() != self._poses.tobytes():
             return True
         fade_time = self.fade_time

@@ -47,7 +47,7 @@ class MarkerReading:
     warning: Phrase | None = None
 
 
-def made_marker(
+def make_marker(
     namespace: str,
     name: str,
     kind: MarkerKind,
@@ -135,7 +135,7 @@ def read_marker(message: Any, index: MeshIndex) -> MarkerReading:
     return MarkerReading(shape, pose, warning)
 
 
-def placed_in(frame: Transform, reading: MarkerReading) -> list[float]:
+def marker_pose(frame: Transform, reading: MarkerReading) -> list[float]:
     """Return the marker's pose in a frame, given the pose of the message's frame in that frame."""
     return list(compose(frame, reading.pose))
 

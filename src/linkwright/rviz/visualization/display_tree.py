@@ -209,7 +209,7 @@ class DisplayTree:
             return
         before, enabled = display.config.box, self._enabled()
         display.config.checked = value
-        self._box_set(display, enabled)
+        self._notify_check_box(display, enabled)
         name = EditName("enable" if value else "disable", display.config.name)
         self._history.add(Edit(name, partial(self._swap_box, display.id), before))
 
@@ -339,10 +339,10 @@ class DisplayTree:
             return box
         now, enabled = display.config.box, self._enabled()
         display.config.box = box
-        self._box_set(display, enabled)
+        self._notify_check_box(display, enabled)
         return now
 
-    def _box_set(self, display: ViewerDisplay, enabled: dict[DisplayConfig, bool]) -> None:
+    def _notify_check_box(self, display: ViewerDisplay, enabled: dict[DisplayConfig, bool]) -> None:
         """Send a display's check box to pages, and notify the displays that were enabled or disabled.
 
         `enabled` contains whether each display was enabled before the change.

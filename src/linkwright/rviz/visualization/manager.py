@@ -260,7 +260,7 @@ class VisualizationManager:
             diagonal: the diagonal of the robot's bounding box, m.
             ground: the height of the ground below the robot, in the Fixed Frame, m.
         """
-        for config, path, value in self.config.sizes_for(diagonal, ground):
+        for config, path, value in self.config.take_sizes(diagonal, ground):
             for display in self.displays:
                 if display.config is config:
                     display.set_property(path, value)
@@ -298,7 +298,7 @@ class VisualizationManager:
         self.publish(TimeState(time.paused, time.mode, time.source, list(time.sources)))
 
     def _time_signalled(self) -> None:
-        self._stream.look_soon()
+        self._stream.schedule_update()
 
     # --- options and frames ------------------------------------------------------------------------------------
 

@@ -111,7 +111,7 @@ def add_shape(
     static = [] if usual.mass is not None else [new_element("static", "true")]
     link = new_element("link", *parts, name=kind if kind in ("wall", "ramp") else "link")
     model = new_element("model", writing.pose_element(pose_in_world(pose)), *static, link, name=name)
-    return _with(world, model), name
+    return _insert(world, model), name
 
 
 def add_light(world: WorldText, kind: LightKind, pose: Sequence[float]) -> tuple[WorldText, str]:
@@ -130,7 +130,7 @@ def add_light(world: WorldText, kind: LightKind, pose: Sequence[float]) -> tuple
     """
     name = world.free_name(f"{kind}_light")
     light = new_element("light", writing.pose_element(pose_in_world(pose)), *_LIGHTS[kind], name=name, type=kind)
-    return _with(world, light), name
+    return _insert(world, light), name
 
 
 def add_include(world: WorldText, address: str, pose: Sequence[float]) -> tuple[WorldText, str]:
@@ -160,10 +160,10 @@ def add_include(world: WorldText, address: str, pose: Sequence[float]) -> tuple[
         raise EditError(phrase("there is no model in '{address}'", address=address))
     name = world.free_name(entities[0].name)
     pose_of_it = writing.pose_element(pose_in_world(pose))
-    return _with(
+    return _insert(
         world, new_element("include", new_element("uri", address), new_element("name", name), pose_of_it)
     ), name
 
 
-def _with(world: WorldText, new: Element) -> WorldText:
+def _insert(world: WorldText, new: Element) -> WorldText:
     return world.edited([writing.inserted_in(world.element, [new], after=_THINGS)])

@@ -123,7 +123,7 @@ def delete(world: WorldText, names: Iterable[str]) -> WorldText:
         if id(child) in elements:
             continue
         for element, attribute in _references_in(child):
-            head = named_in(element, attribute).partition(SEPARATOR)[0]
+            head = referenced_name(element, attribute).partition(SEPARATOR)[0]
             if head in gone:
                 where = child.attributes.get("name") or child.tag
                 raise EditError(phrase("'{name}' cannot be deleted: '{user}' refers to it", name=head, user=where))
@@ -163,7 +163,7 @@ def moved(world: WorldText, entity: Entity, pose: Pose) -> list[Replacement]:
     wanted = transform_of(pose)
     edits = place(entity, _local(world, entity, pose))
     for entry in state_of(world, entity.name):
-        edits += _state_moved(entry, entity.place, wanted, pose)
+        edits += _move_state_edits(entry, entity.place, wanted, pose)
     return edits
 
 
@@ -183,19 +183,19 @@ def state_of(world: WorldText, name: str) -> list[Element]:
     return [entry for entry in entries if entry.attributes.get("name") == name]
 
 
-def named_in(element: Element, attribute: str | None) -> str:
+def referenced_name(element: Element, attribute: str | None) -> str:
     """Return the name to which an element refers, in an attribute or, if it is None, in the text."""
     return element.text().strip() if attribute is None else element.attributes[attribute]
 
 
-def renamed_references(world: WorldText, names: dict[str, str]) -> list[Replacement]:
+def rename_references(world: WorldText, names: dict[str, str]) -> list[Replacement]:
     """Return the edits that update references to renamed entities and to their parts.
 
     `names` maps old names to new ones.
     """
     edits: list[Replacement] = []
     for element, attribute in writing.references(world.element):
-        written = named_in(element, attribute)
+        written = referenced_name(element, attribute)
         head, colon, tail = written.partition(SEPARATOR)
         new = names.get(head)
         if new is None:
@@ -213,7 +213,7 @@ def renamed_references(world: WorldText, names: dict[str, str]) -> list[Replacem
 def _values(entity: Entity, wanted: Change) -> list[Replacement]:
     edits: list[Replacement] = []
     if wanted.size is not None and (entity.shape is None or tuple(wanted.size) != entity.shape.size):
-        edits += _resized(entity, tuple(wanted.size))
+        edits += _size_edits(entity, tuple(wanted.size))
     if wanted.colour is not None:
         edits += _coloured(entity, wanted.colour)
     if wanted.static is not None and wanted.static != entity.static:
@@ -221,7 +221,7 @@ def _values(entity: Entity, wanted: Change) -> list[Replacement]:
     return edits
 
 
-def _resized(entity: Entity, size: tuple[float, ...]) -> list[Replacement]:
+def _size_edits(entity: Entity, size: tuple[float, ...]) -> list[Replacement]:
     shape = entity.shape
     if shape is None:
         raise EditError(phrase("'{name}' cannot be resized: it is not a simple shape", name=entity.name))
@@ -236,7 +236,7 @@ def _resized(entity: Entity, size: tuple[float, ...]) -> list[Replacement]:
     for part in shapes:
         assert part.element is not None, "it was read from the text"
         for new in geometry(shape.kind, size):
-            edits += _same_values(part.element, new)
+            edits += _copy_values(part.element, new)
     before, after = solid(shape.kind, shape.size), solid(shape.kind, size)
     found = link.inertial
     if found is not None and found.element is not None and not found.auto and before.mass > 0:
@@ -259,7 +259,7 @@ def _resized(entity: Entity, size: tuple[float, ...]) -> list[Replacement]:
     return edits
 
 
-def _same_values(owner: Element, new: Element) -> list[Replacement]:
+def _copy_values(owner: Element, new: Element) -> list[Replacement]:
     """Return the edits that give a child of `owner` the values of a new element.
 
     If there is no child with the same tag, the new element is inserted.
@@ -283,7 +283,7 @@ def _same_values(owner: Element, new: Element) -> list[Replacement]:
         if index < len(theirs) and not any(True for _ in child.elements()):
             edits += writing.set_numbers(theirs[index], [float(word) for word in child.text().split()])
         else:
-            edits += _same_values(found[0], child)
+            edits += _copy_values(found[0], child)
     return edits
 
 
@@ -310,7 +310,7 @@ def _coloured(entity: Entity, colour: Sequence[float]) -> list[Replacement]:
                 edits += writing.set_child(material, tag, colour)
         new = [new_element(tag, lengths(tuple(colour))) for tag in missing]
         if script is not None:
-            edits.append(writing.exchanged(script, new))
+            edits.append(writing.replace_element(script, new))
         elif new:
             edits.append(writing.inserted_in(material, new))
     return edits
@@ -348,7 +348,7 @@ def _with_names(world: WorldText, names: dict[str, str]) -> WorldText:
             edits += writing.set_attribute(entry, "name", new)
     if len(set(names.values())) < len(names):
         raise EditError(phrase("two entities cannot have the same name"))
-    return world.edited([*edits, *renamed_references(world, names)])
+    return world.edited([*edits, *rename_references(world, names)])
 
 
 def _named(entity: Entity, name: str) -> list[Replacement]:
@@ -409,7 +409,7 @@ def _local(world: WorldText, entity: Entity, pose: Pose) -> Pose:
     return writing.pose_from(local)
 
 
-def _state_moved(entry: Element, old: Transform, new: Transform, pose: Pose) -> list[Replacement]:
+def _move_state_edits(entry: Element, old: Transform, new: Transform, pose: Pose) -> list[Replacement]:
     """Return the edits that move an entity and its parts in the saved state, given in the world."""
     by = compose(new, invert(old))
     edits: list[Replacement] = []

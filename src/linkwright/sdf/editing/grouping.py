@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from linkwright.diagnostics import phrase
 from linkwright.geometry.single import Pose, Transform, compose
 from linkwright.sdf.editing import writing
-from linkwright.sdf.editing.changing import named_in, place, pose_of_entity, renamed_references, state_of
+from linkwright.sdf.editing.changing import place, pose_of_entity, referenced_name, rename_references, state_of
 from linkwright.sdf.editing.errors import EditError
 from linkwright.sdf.editing.shapes import lengths, new_element
 from linkwright.sdf.editing.text import Entity, WorldText
@@ -52,8 +52,8 @@ def group(world: WorldText, names: Sequence[str], name: str) -> WorldText:
         base = entity.pose.relative_to
         if base.partition(SEPARATOR)[0] in inside and not state_of(world, entity.name):
             continue  # The pose remains relative to another model in the group.
-        edits += _placed_in(world, entity, origin)
-    edits += renamed_references_outside(world, inside, name)
+        edits += _relative_pose_edits(world, entity, origin)
+    edits += rename_outside_references(world, inside, name)
     text = world.text
     first = min(entities, key=lambda entity: entity.element.offset)
     start = writing.range_of(first.element)[0]
@@ -69,7 +69,7 @@ def group(world: WorldText, names: Sequence[str], name: str) -> WorldText:
         moved = [
             Replacement(replacement.start - begin, replacement.end - begin, replacement.text) for replacement in own
         ]
-        parts.append(inner + _shifted(apply(text[begin:end], moved), _STEP))
+        parts.append(inner + _indent(apply(text[begin:end], moved), _STEP))
     whole = newline.join([head, *parts, f"{blanks}</model>"])
     begin, end = writing.range_of(first.element)
     edits.append(Replacement(begin, end, whole))
@@ -101,9 +101,9 @@ def ungroup(world: WorldText, name: str) -> tuple[WorldText, list[str]]:
     edits: list[Replacement] = [writing.removed(entry) for entry in state_of(world, name)]
     frames = world.frames.inside(name)
     for element, old in zip(parts, _old_names(entity, parts), strict=True):
-        edits += _let_out(world, entity, element, old, names, compose(entity.place, frames.pose(old)))
+        edits += _release_edits(world, entity, element, old, names, compose(entity.place, frames.pose(old)))
     for element, attribute in writing.references(world.element):
-        head, colon, tail = named_in(element, attribute).partition(SEPARATOR)
+        head, colon, tail = referenced_name(element, attribute).partition(SEPARATOR)
         part, more, rest = tail.partition(SEPARATOR)
         if head != name:
             continue
@@ -119,17 +119,17 @@ def ungroup(world: WorldText, name: str) -> tuple[WorldText, list[str]]:
     blanks = indentation(world.text, begin)
     inner = apply(world.text[first:last], own).strip()
     step = (indentation(world.text, parts[0].offset) or "").removeprefix(blanks or "")
-    edits.append(Replacement(begin, end, _unshifted(inner, step)))
+    edits.append(Replacement(begin, end, _unindent(inner, step)))
     return world.edited(edits), list(names.values())
 
 
-def renamed_references_outside(world: WorldText, inside: frozenset[str], group_name: str) -> list[Replacement]:
+def rename_outside_references(world: WorldText, inside: frozenset[str], group_name: str) -> list[Replacement]:
     """Return the edits that update references to the members of a group from outside the group."""
     names = {name: f"{group_name}{SEPARATOR}{name}" for name in inside}
     ranges = [writing.range_of(world.entity(name).element) for name in inside]
     return [
         renamed_reference
-        for renamed_reference in renamed_references(world, names)
+        for renamed_reference in rename_references(world, names)
         if not any(start <= renamed_reference.start and renamed_reference.end <= end for start, end in ranges)
     ]
 
@@ -150,7 +150,7 @@ def _check_group(entities: Sequence[Entity]) -> None:
         )
 
 
-def _placed_in(world: WorldText, entity: Entity, origin: Transform) -> list[Replacement]:
+def _relative_pose_edits(world: WorldText, entity: Entity, origin: Transform) -> list[Replacement]:
     """Return the edits that write the pose of an entity relative to a group's origin.
 
     The pose of the entity in the world does not change.
@@ -165,7 +165,7 @@ def _placed_in(world: WorldText, entity: Entity, origin: Transform) -> list[Repl
     edits = place(entity, local)
     pose = entity.element.first("pose")
     if pose is not None:
-        edits += [edit for name in ("relative_to", "frame") for edit in writing.without_attribute(pose, name)]
+        edits += [edit for name in ("relative_to", "frame") for edit in writing.remove_attribute(pose, name)]
     return edits
 
 
@@ -188,7 +188,7 @@ def _names_of(world: WorldText, entity: Entity, parts: Sequence[Element]) -> dic
     return names
 
 
-def _let_out(
+def _release_edits(
     world: WorldText, entity: Entity, element: Element, old: str, names: dict[str, str], there: Transform
 ) -> list[Replacement]:
     """Return the edits in a member of a group that is moved out of the group.
@@ -230,16 +230,16 @@ def _let_out(
     part = Entity(old, "model", element, Include("") if element.tag == "include" else model, model, None, there, None)
     edits += place(part, local)
     if pose is not None:
-        edits += [edit for name in ("relative_to", "frame") for edit in writing.without_attribute(pose, name)]
+        edits += [edit for name in ("relative_to", "frame") for edit in writing.remove_attribute(pose, name)]
     return edits
 
 
-def _shifted(text: str, step: str) -> str:
+def _indent(text: str, step: str) -> str:
     """Return a text with all lines except the first indented by `step`; CDATA is not changed."""
     return _outside_cdata(text, lambda part: _LINE.sub(step, part))
 
 
-def _unshifted(text: str, step: str) -> str:
+def _unindent(text: str, step: str) -> str:
     """Return a text with one indentation by `step` removed from each line; CDATA is not changed."""
     pattern = re.compile(rf"(?<=\n){re.escape(step)}")
     return _outside_cdata(text, lambda part: pattern.sub("", part)) if step else text

@@ -24,7 +24,7 @@ from linkwright.sdf.old_versions import is_old
 from linkwright.sdf.poses import AT_ORIGIN, SEPARATOR, WORLD, RawPose
 from linkwright.sdf.reader import read
 from linkwright.sdf.resources import ResourceFinder
-from linkwright.sdf.saved import as_saved
+from linkwright.sdf.saved import with_saved_state
 from linkwright.sdf.text import parse_as_gazebo
 from linkwright.sdf.worlds import World
 from linkwright.xmltree import Element
@@ -112,7 +112,7 @@ class WorldText:
         self.element: Element = reading.sdf.worlds[0].element
         self._included = resolve_includes(replace(reading.sdf, worlds=(self._written,)), path, finder)
         resolved = self._included.sdf.worlds[0]
-        self.world: World = as_saved(resolved)
+        self.world: World = with_saved_state(resolved)
         self.frames = Frames(self.world)
         self._models = {model.name: model for model in reversed(self.world.models)}
         self._lights = {light.name: light for light in reversed(self.world.lights)}

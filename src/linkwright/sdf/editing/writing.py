@@ -152,7 +152,7 @@ def set_reference(element: Element, attribute: str | None, name: str) -> list[Re
     return set_text(element, name) if attribute is None else set_attribute(element, attribute, name)
 
 
-def without_attribute(element: Element, name: str) -> list[Replacement]:
+def remove_attribute(element: Element, name: str) -> list[Replacement]:
     """Return the edits that remove an attribute and the whitespace before it."""
     text = text_of(element)
     named, found = (each(text, element.offset, name) for each in (attribute_name_range, attribute_value_range))
@@ -167,7 +167,7 @@ def removed(element: Element) -> Replacement:
     return Replacement(*whole_lines(text_of(element), *range_of(element)), "")
 
 
-def exchanged(element: Element, new: list[Element]) -> Replacement:
+def replace_element(element: Element, new: list[Element]) -> Replacement:
     """Return the edit that replaces an element by other elements, or removes it if there are none."""
     if not new:
         return removed(element)

@@ -282,7 +282,7 @@ def parse_bridge_argument(word: str) -> BridgedTopic:
         raise LinkwrightError(
             Diagnostic("NODE820", phrase("'{word}' does not describe a topic to bridge", word=word), hint=hint)
         )
-    return BridgedTopic(name, name, _full(ros_type), _modern(gz_type), _DIRECTIONS[mark])
+    return BridgedTopic(name, name, _full(ros_type), _current_gz_type(gz_type), _DIRECTIONS[mark])
 
 
 def read_bridge_file(path: str) -> list[BridgedTopic]:
@@ -301,37 +301,41 @@ def read_bridge_file(path: str) -> list[BridgedTopic]:
         message = phrase("'{path}' is not YAML: {reason}", path=path, reason=foreign(" ".join(str(error).split())))
         raise LinkwrightError(Diagnostic("NODE821", message)) from error
     if not isinstance(entries, list):
-        raise _no_topics(path, phrase("it is not a list"))
+        raise _bridge_file_error(path, phrase("it is not a list"))
     return [_topic_of(entry, number, path) for number, entry in enumerate(entries, start=1)]
 
 
 def _topic_of(entry: Any, number: int, path: str) -> BridgedTopic:
     if not isinstance(entry, dict):
-        raise _no_topics(path, phrase("entry {number} is not a mapping", number=number))
+        raise _bridge_file_error(path, phrase("entry {number} is not a mapping", number=number))
     both = entry.get("topic_name", "")
     ros_topic = entry.get("ros_topic_name") or both or entry.get("gz_topic_name", "")
     gz_topic = entry.get("gz_topic_name") or both or ros_topic
     ros_type, gz_type = entry.get("ros_type_name", ""), entry.get("gz_type_name", "")
     for key, value in (("ros_topic_name", ros_topic), ("ros_type_name", ros_type), ("gz_type_name", gz_type)):
         if not isinstance(value, str) or not value:
-            raise _no_topics(path, phrase("entry {number} has no '{key}'", number=number, key=key))
+            raise _bridge_file_error(path, phrase("entry {number} has no '{key}'", number=number, key=key))
     direction = entry.get("direction", "BIDIRECTIONAL")
     if direction not in _DIRECTIONS.values():
         reason = phrase("entry {number} has the unknown direction '{value}'", number=number, value=str(direction))
-        raise _no_topics(path, reason)
+        raise _bridge_file_error(path, reason)
     queues = [entry.get(f"{side}_queue", _QUEUE) for side in ("publisher", "subscriber")]
     for side, value in zip(("publisher", "subscriber"), queues, strict=True):
         if not isinstance(value, int) or isinstance(value, bool) or value < 0:
-            raise _no_topics(
+            raise _bridge_file_error(
                 path, phrase("entry {number}: '{key}' is not a number", number=number, key=f"{side}_queue")
             )
     lazy = entry.get("lazy")
     if lazy is not None and not isinstance(lazy, bool):
-        raise _no_topics(path, phrase("entry {number}: '{key}' is neither true nor false", number=number, key="lazy"))
-    return BridgedTopic(ros_topic, gz_topic, _full(ros_type), _modern(gz_type), direction, queues[0], queues[1], lazy)
+        raise _bridge_file_error(
+            path, phrase("entry {number}: '{key}' is neither true nor false", number=number, key="lazy")
+        )
+    return BridgedTopic(
+        ros_topic, gz_topic, _full(ros_type), _current_gz_type(gz_type), direction, queues[0], queues[1], lazy
+    )
 
 
-def _no_topics(path: str, reason: Any) -> LinkwrightError:
+def _bridge_file_error(path: str, reason: Any) -> LinkwrightError:
     message = phrase("'{path}' does not list topics to bridge: {reason}", path=path, reason=reason)
     hint = phrase("each entry needs ros_topic_name, gz_topic_name, ros_type_name, gz_type_name and direction")
     return LinkwrightError(Diagnostic("NODE820", message, hint=hint))
@@ -341,5 +345,5 @@ def _full(ros_type: str) -> str:
     return ros_type if ros_type.count("/") == 2 else ros_type.replace("/", "/msg/", 1)
 
 
-def _modern(gz_type: str) -> str:
+def _current_gz_type(gz_type: str) -> str:
     return gz_type.replace("ignition.msgs.", "gz.msgs.")

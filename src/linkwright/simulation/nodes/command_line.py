@@ -41,7 +41,7 @@ def classic_server(words: Sequence[str], *, window: bool = False) -> NodeCommand
     """Parse the arguments of ``gzserver``, or of ``gazebo``, which also opens a window."""
     own, ros = _split_ros_arguments(words)
     options, others = _read(own, _CLASSIC_VALUES.split())
-    parameters = _seed(options) | ({"gui": True} if window else {})
+    parameters = _seed_parameter(options) | ({"gui": True} if window else {})
     if others and others[0]:
         parameters["world"] = others[0]
     if "-u" in options or "--pause" in options:
@@ -55,7 +55,7 @@ def gz_server(words: Sequence[str]) -> NodeCommand:
     options, others = _read(own, _GZ_VALUES.split())
     if "-g" in options:
         return NodeCommand("ros_gz_sim", "gzclient")
-    parameters = _seed(options) | {"pause": "-r" not in options, "gui": "-s" not in options}
+    parameters = _seed_parameter(options) | {"pause": "-r" not in options, "gui": "-s" not in options}
     if any(others):
         parameters["world"] = next(filter(None, others))
     return NodeCommand("ros_gz_sim", "gzserver", parameters, ros)
@@ -90,6 +90,6 @@ def _read(words: list[str], with_value: Sequence[str]) -> tuple[dict[str, str], 
     return options, others
 
 
-def _seed(options: Mapping[str, str]) -> dict[str, Any]:
+def _seed_parameter(options: Mapping[str, str]) -> dict[str, Any]:
     seed = options.get("--seed", "")
     return {"seed": int(seed)} if seed.isdigit() else {}

@@ -10,7 +10,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.graph import Graph
 from linkwright.messages import get_service
 from linkwright.nodes.options import NodeOptions, create_node, starting
-from linkwright.simulation.nodes.spawner import Entity, EntitySpawner, read_description, text_of_stdin
+from linkwright.simulation.nodes.spawner import Entity, EntitySpawner, read_description, read_stdin
 
 
 class SpawnEntity(EntitySpawner):
@@ -61,7 +61,7 @@ class SpawnEntity(EntitySpawner):
         elif wanted.database is not None:
             self._spawn(read_description(f"model://{wanted.database}", self._environment))
         else:
-            self._spawn(text_of_stdin())
+            self._spawn(read_stdin())
 
     def _spawn(self, text: str) -> None:
         super()._spawn(text.replace("package://", "model://") if self._arguments.package_to_model else text)

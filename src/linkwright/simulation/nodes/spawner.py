@@ -180,6 +180,6 @@ def read_description(address: str, environment: Mapping[str, str]) -> str:
         raise LinkwrightError(Diagnostic("NODE811", message)) from error
 
 
-def text_of_stdin() -> str:
+def read_stdin() -> str:
     """Read the description from standard input."""
     return sys.stdin.read()

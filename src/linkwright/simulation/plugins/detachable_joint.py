@@ -55,7 +55,7 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
         detach = parameters.detach_topic or parameters.topic or f"{begin}/detach"
         self.node.subscribe("std_msgs/msg/Empty", detach, self._let_go)
         self.node.subscribe("std_msgs/msg/Empty", parameters.attach_topic or f"{begin}/attach", self._hold)
-        if self._is_wanted and self._found_child():
+        if self._is_wanted and self._find_child():
             self._attach()
         self.every(_LOOKS, self._attach_if_found)
 
@@ -63,7 +63,7 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
         """Restore the initial state, attached or detached."""
         self._detach()
         self._is_wanted = self.parameters.initial_attach
-        if self._is_wanted and self._found_child():
+        if self._is_wanted and self._find_child():
             self._attach()
 
     def resume(self, before: SimulatedPlugin[DetachableJointParameters]) -> None:
@@ -95,7 +95,7 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
             self._is_attached, self._is_wanted = False, True
         if not self._is_wanted:
             return
-        if self._found_child():
+        if self._find_child():
             self._attach()
         elif not self._is_warned:
             self._is_warned = True
@@ -103,7 +103,7 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
             message = phrase("plugin '{plugin}': there is no link '{name}'", plugin=self.place.name, name=name)
             self.node.logger.warning(message)
 
-    def _found_child(self) -> bool:
+    def _find_child(self) -> bool:
         """Find the child link in a model of the world or in a nested model; return whether it exists."""
         parameters, bodies = self.parameters, self.simulation.scene.bodies
         model = self.place.path if parameters.child_model == _OWN else parameters.child_model

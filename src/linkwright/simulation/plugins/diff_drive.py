@@ -101,7 +101,7 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
         self._place = PlanarPose()
         self._turned = self._angles()
 
-    def _fit_wheels(
+    def _create_motors(
         self, left: tuple[str, ...], right: tuple[str, ...], sizes: list[tuple[float, float]], torque: float
     ) -> None:
         """Create motors for the wheels; `sizes` holds the separation and radius of each pair, in m.
@@ -184,7 +184,7 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
             _one_per_pair(parameters.wheel_diameter, count),
         )
         sizes = [(a, b / 2.0) for a, b in zip(separations, diameters, strict=True)]
-        self._fit_wheels(parameters.left_joint, parameters.right_joint, sizes, parameters.max_wheel_torque)
+        self._create_motors(parameters.left_joint, parameters.right_joint, sizes, parameters.max_wheel_torque)
         self._wheel_speeds = [(0.0, 0.0)] * len(self._pairs)
         odometry = (
             node.publisher("nav_msgs/msg/Odometry", parameters.odometry_topic, 1) if parameters.publish_odom else None
@@ -277,7 +277,7 @@ class GzDiffDrive(_DiffDrive[GzParameters]):
         parameters = self.parameters
         count = max(len(parameters.left_joint), len(parameters.right_joint))
         sizes = [(parameters.wheel_separation, parameters.wheel_radius)] * count
-        self._fit_wheels(parameters.left_joint, parameters.right_joint, sizes, GZ_TORQUE)
+        self._create_motors(parameters.left_joint, parameters.right_joint, sizes, GZ_TORQUE)
         self._commands = DriveCommands(parameters)
         self._topics = connect_drive(self, parameters, self._commands)
         self.node.subscribe("std_msgs/msg/Bool", f"/model/{self.place.path}/enable", self._commands.enable)

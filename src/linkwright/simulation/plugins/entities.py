@@ -114,14 +114,14 @@ class Entities:
         def get() -> None:
             response.state = self.state(request.name, request.reference_frame)
 
-        return _answered_without_text(response, get, service, log)
+        return _respond_without_message(response, get, service, log)
 
     def answer_set(self, service: str, request: Any, response: Any, log: Callable[[Phrase], object]) -> Any:
         """Answer ``gazebo_msgs/srv/SetEntityState``.
 
         `log`, such as a logger's method, receives the reason for a failure.
         """
-        return _answered_without_text(response, partial(self.put, request.state), service, log)
+        return _respond_without_message(response, partial(self.put, request.state), service, log)
 
     def _one(self, name: str, known: Collection[str]) -> str:
         if name in known:
@@ -149,7 +149,7 @@ def fill_response(response: Any, work: Callable[[], str]) -> Any:
     return response
 
 
-def _answered_without_text(
+def _respond_without_message(
     response: Any, work: Callable[[], object], service: str, log: Callable[[Phrase], object]
 ) -> Any:
     """Call `work`, and return the response with `success`; `log` receives the reason for a failure."""

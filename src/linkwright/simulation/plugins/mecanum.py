@@ -110,14 +110,14 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
         """Return the angles in rad (derivative 0) or velocities in rad/s (1) of the four wheels."""
         return [self.simulation.joint_state(joint)[derivative] for joint in self._wheels]
 
-    def _rolled(self, turned: list[float]) -> tuple[float, float, float]:
+    def _robot_motion(self, turned: list[float]) -> tuple[float, float, float]:
         """Return the robot's displacement or velocity that corresponds to the wheels' angles or velocities."""
         return self._drive_train.motion(*turned)
 
     def _move(self) -> None:
         before, self._angles = self._angles, self._states(0)
-        self._place.advance(*self._rolled([new - old for new, old in zip(self._angles, before, strict=True)]))
-        self.hold(*self._rolled(self._states(1)))
+        self._place.advance(*self._robot_motion([new - old for new, old in zip(self._angles, before, strict=True)]))
+        self.hold(*self._robot_motion(self._states(1)))
 
     def _publish(self) -> None:
-        self._topics.publish(self.stamp(), self._place.transform, *self._rolled(self._states(1)))
+        self._topics.publish(self.stamp(), self._place.transform, *self._robot_motion(self._states(1)))

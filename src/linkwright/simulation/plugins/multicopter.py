@@ -90,7 +90,7 @@ class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
         self.reset()
         namespace = _text(self.place.element, "robotNamespace").strip("/") or self.place.path
         self.node.subscribe("actuator_msgs/msg/Actuators", f"/{namespace}/{parameters.command_topic}", self._receive)
-        self.every(0.0, self._pull)
+        self.every(0.0, self._apply_thrust)
 
     def reset(self) -> None:
         """Stop the rotor."""
@@ -102,7 +102,7 @@ class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
         if number < len(speeds) and isfinite(speeds[number]):
             self.wanted = float(speeds[number])
 
-    def _pull(self) -> None:
+    def _apply_thrust(self) -> None:
         parameters, simulation = self.parameters, self.simulation
         wanted = min(max(self.wanted, 0.0), parameters.max_rot_velocity)
         constant = parameters.time_constant_up if wanted > self.speed else parameters.time_constant_down
@@ -172,7 +172,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
             twist, start + parameters.command_topic, self._receive, commander=commander, rest=self._rest
         )
         self.node.subscribe("std_msgs/msg/Bool", start + parameters.enable_topic, self._enable)
-        self.every(0.0, self._fly)
+        self.every(0.0, self._command_rotors)
 
     def reset(self) -> None:
         """Drop the command, and enable the controller."""
@@ -257,7 +257,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
     def _enable(self, message: Any) -> None:
         self._is_enabled = bool(message.data)
 
-    def _fly(self) -> None:
+    def _command_rotors(self) -> None:
         motors = self._motors()
         if not self._is_enabled:
             for motor in motors.values():

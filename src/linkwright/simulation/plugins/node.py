@@ -65,7 +65,7 @@ class PluginNode(SteppedNode):
             usual: for topics of gz, the usual name on robots. The topic is also published under this name if the
                 simulation has this option enabled and no other plugin uses the name.
         """
-        return self._publish_as(msg_type, self._both(topic, usual), qos)
+        return self._create_output(msg_type, self._both(topic, usual), qos)
 
     def subscribe(
         self,
@@ -79,7 +79,7 @@ class PluginNode(SteppedNode):
         usual: str = "",
     ) -> None:
         """Subscribe to a topic; the arguments are those of `publisher` and of `SteppedNode.subscribe`."""
-        received = self._received_by(topic, callback, rest, commander)
+        received = self._make_callback(topic, callback, rest, commander)
         self._subscribe_to(msg_type, self._both(topic, usual), received, qos, commander)
 
     def close(self) -> None:

@@ -67,10 +67,10 @@ def _frame_of(simulation: Simulation, model: Model, path: str) -> Pose:
     if not inside or not model.links:
         return lambda: simulation.model_pose(top)
     first = model.links[0].name
-    return _moving_with(simulation, f"{path}{SEPARATOR}{first}", Frames(model).pose(first))
+    return _pose_on_link(simulation, f"{path}{SEPARATOR}{first}", Frames(model).pose(first))
 
 
-def _moving_with(simulation: Simulation, link: str, place: Transform) -> Pose:
+def _pose_on_link(simulation: Simulation, link: str, place: Transform) -> Pose:
     """Return a function that returns the current pose in the world of a frame that is fixed to a link.
 
     `place` is the pose of the link in this frame.
@@ -97,7 +97,7 @@ def _parts(simulation: Simulation, model: Model, path: str, frames: Frames, plac
         first = next((link.name for link in inner.links), "")
         if not first:
             continue
-        deeper = _moving_with(simulation, f"{name}{SEPARATOR}{first}", inside.pose(first))
+        deeper = _pose_on_link(simulation, f"{name}{SEPARATOR}{first}", inside.pose(first))
         yield Part(PartKind.NESTED_MODEL, name, path, partial(_between, place, deeper))
         yield from _parts(simulation, inner, name, inside, deeper)
 

@@ -12,7 +12,7 @@ from linkwright.sdf.plugins import Plugin
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.sdf.worlds import World
 from linkwright.simulation.plugins.plugin import PlacedSensor, PluginPlace
-from linkwright.simulation.plugins.registry import needs_nothing
+from linkwright.simulation.plugins.registry import is_built_in
 
 
 def world_plugins(world: World, systems: Sequence[Plugin] = ()) -> Iterator[PluginPlace]:
@@ -47,7 +47,7 @@ def _of_model(world: World, model: Model, path: str, frames: Frames) -> Iterator
         plugins = placed.sensor.plugins
         for plugin in plugins:
             yield PluginPlace(plugin.name or placed.sensor.name, plugin, world, model, path, placed)
-        if all(needs_nothing(plugin.filename) for plugin in plugins):  # true if a sensor has only systems of gz
+        if all(is_built_in(plugin.filename) for plugin in plugins):  # true if a sensor has only systems of gz
             yield PluginPlace(placed.sensor.name, None, world, model, path, placed)
     for inner in model.models:
         yield from _of_model(world, inner, f"{path}{SEPARATOR}{inner.name}", frames.inside(inner.name))

@@ -52,7 +52,7 @@ class GzPoses(SimulatedPlugin[PoseParameters]):
         parts = [part for part in parts_of(self.simulation, model, path) if part.kind in kinds]
         topic = f"/model/{path.replace(SEPARATOR, '/model/')}/pose"
         if parameters.static_publisher:
-            moving = self._moved_by_joints(model)
+            moving = self._links_with_joints(model)
             resting = [part for part in parts if part.kind is not PartKind.LINK or part.name not in moving]
             parts = [part for part in parts if part not in resting]
             self._publish_at(
@@ -92,7 +92,7 @@ class GzPoses(SimulatedPlugin[PoseParameters]):
         for message in sent:
             output.publish(message)
 
-    def _moved_by_joints(self, model: Model) -> set[str]:
+    def _links_with_joints(self, model: Model) -> set[str]:
         """Return the links of the model's movable joints, except the link with which its frame moves."""
         begin = f"{self.place.path}{SEPARATOR}"
         moving = {

@@ -20,7 +20,7 @@ from linkwright.sdf.worlds import physics_of
 from linkwright.simulation.plugins.entities import Entities, fill_response, numbers, pose_message
 from linkwright.simulation.plugins.parameters import NoParameters
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
-from linkwright.simulation.scene.bodies import set_first
+from linkwright.simulation.scene.bodies import set_coefficient
 
 _TYPES = {"revolute": 0, "continuous": 1, "prismatic": 2, "fixed": 3, "ball": 4, "universal": 5}
 """The joint types of GetJointProperties."""
@@ -120,7 +120,7 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
                 joint.range = [next(iter(config.lo_stop), lower), next(iter(config.hi_stop), upper)]
                 joint.limited = True
             if len(config.damping):
-                set_first(joint, "damping", config.damping[0])
+                set_coefficient(joint, "damping", config.damping[0])
             self.simulation.set_altered()
             return "SetJointProperties: properties set"
 

@@ -59,7 +59,7 @@ def is_of_gz(filename: str) -> bool:
     return library_name(filename).startswith("gz-sim-")
 
 
-def needs_nothing(filename: str) -> bool:
+def is_built_in(filename: str) -> bool:
     """Return whether the simulation itself does the work of a library, or no library is named."""
     return filename in _NONE or library_name(filename) in _BUILT_IN
 

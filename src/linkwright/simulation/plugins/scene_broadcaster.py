@@ -90,15 +90,15 @@ class GzSceneBroadcaster(SimulatedPlugin[SceneParameters]):
         world = self.simulation.world
         lights = [(light.name, Frames(world).placed(light.pose)) for light in world.lights]
         self._all = _Entities(
-            (*(_own_name(part.name) for part, _ in ordered), *(name for name, _ in lights)),
+            (*(_local_name(part.name) for part, _ in ordered), *(name for name, _ in lights)),
             (
                 *(part.pose() if static or part.kind is PartKind.VISUAL else part.pose for part, static in ordered),
                 *(pose for _, pose in lights),
             ),
         )
         moving = [part for part, static in ordered if not static and part.kind is not PartKind.VISUAL]
-        self._dynamic = _Entities(tuple(_own_name(part.name) for part in moving), [part.pose for part in moving])
+        self._dynamic = _Entities(tuple(_local_name(part.name) for part in moving), [part.pose for part in moving])
 
 
-def _own_name(name: str) -> str:
+def _local_name(name: str) -> str:
     return name.rpartition(SEPARATOR)[2]

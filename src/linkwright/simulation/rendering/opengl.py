@@ -130,7 +130,7 @@ class OpenGlRenderer:
         model.vis.quality.offsamples = 0
         model.vis.quality.shadowsize = 0
         model.vis.global_.offwidth, model.vis.global_.offheight = self._size
-        even = _is_the_same_everywhere(lights_of(simulation, np.zeros(3)))
+        even = _is_uniform(lights_of(simulation, np.zeros(3)))
         model.vis.quality.numquads = _QUADS if even else _LIT_QUADS
         model.vis.quality.numslices, model.vis.quality.numstacks = _SLICES, _STACKS
         model.stat.extent = 1.0
@@ -161,14 +161,14 @@ class OpenGlRenderer:
         circle = [*zip(np.cos(turns).tolist(), np.sin(turns).tolist(), strict=True)]
         arc = [*zip(np.cos(rises).tolist(), np.sin(rises).tolist(), strict=True)]
         ball = [[(x * r, y * r, z) for r, z in arc for x, y in sides] for sides in pairwise(circle)]
-        self._redraw(_BALL, [(_STRIP, [(corner, corner) for corner in strip]) for strip in ball])
+        self._replace_display_list(_BALL, [(_STRIP, [(corner, corner) for corner in strip]) for strip in ball])
         tube = (_STRIP, [((x, y, 0.0), (x, y, z)) for x, y in circle for z in (1.0, -1.0)])
         ends = [(_FAN, [((0.0, 0.0, z), (x, y, z)) for x, y in circle[:: int(z)]]) for z in (1.0, -1.0)]
-        if _is_the_same_everywhere(lights_of(self._simulation, np.zeros(3))):
-            self._redraw(_TUBE, [tube])
-            self._redraw(_CYLINDER, [tube, *ends])
+        if _is_uniform(lights_of(self._simulation, np.zeros(3))):
+            self._replace_display_list(_TUBE, [tube])
+            self._replace_display_list(_CYLINDER, [tube, *ends])
 
-    def _redraw(self, shape: int, pieces: list[tuple[int, list[tuple[Vector3, Vector3]]]]) -> None:
+    def _replace_display_list(self, shape: int, pieces: list[tuple[int, list[tuple[Vector3, Vector3]]]]) -> None:
         """Replace one of MuJoCo's display lists by the given primitives.
 
         Each primitive has a kind, and the normals and positions of its vertices.
@@ -201,7 +201,7 @@ class OpenGlRenderer:
         finally:
             model.geom_group[:] = groups
         lights = lights_of(simulation, axes[:, 2])
-        if _is_the_same_everywhere(lights):
+        if _is_uniform(lights):
             self._flatten_planes(hole, np.array(pose[:3]))
         _, down, forwards = axes.T
         self._set_lights(lights)
@@ -331,7 +331,7 @@ def _outside_image(simulation: Simulation, hole: Optics, origin: Array, axes: Ar
     return (beyond > reach).any(axis=0) & (reach > 0)  # MuJoCo gives infinite geoms the radius 0.
 
 
-def _is_the_same_everywhere(lights: list[PlacedLight]) -> bool:
+def _is_uniform(lights: list[PlacedLight]) -> bool:
     return all(light.light.type == "directional" for light in lights)
 
 

@@ -170,7 +170,7 @@ class EmbreeCaster:
             np.full(count, -1, np.int32),
             np.zeros((count, 3), np.float32) if normals else None,
         )
-        self._cast_at_planes(hits, origin, rays)
+        self._cast_to_planes(hits, origin, rays)
         origins = rays * np.float32(start)
         origins += origin.astype(np.float32)
         if self._movable.settle(origin):
@@ -198,7 +198,7 @@ class EmbreeCaster:
 
     def _reset_movable(self) -> None:
         self._movable = MovableGeoms(self._simulation, self._loose)
-        self._places, self._sizes = self._fixed_places(), self._simulation.model.geom_size.copy()
+        self._places, self._sizes = self._fixed_poses(), self._simulation.model.geom_size.copy()
 
     def _release_changed(self) -> None:
         """Move geoms whose pose or size has changed out of the static tree.
@@ -207,7 +207,7 @@ class EmbreeCaster:
         """
         model = self._simulation.model
         still = np.array(list(self._fixed), dtype=np.int64)
-        moved = still[(self._fixed_places() != self._places).any(axis=1)]
+        moved = still[(self._fixed_poses() != self._places).any(axis=1)]
         shaped = np.flatnonzero((model.geom_size != self._sizes).any(axis=1))
         if not len(moved) and not len(shaped):
             return
@@ -222,7 +222,7 @@ class EmbreeCaster:
         if rested or len(self._fixed) != before:
             self._build_static()
 
-    def _fixed_places(self) -> Any:
+    def _fixed_poses(self) -> Any:
         data, geoms = self._simulation.data, list(self._fixed)
         return np.concatenate([data.geom_xpos[geoms], data.geom_xmat[geoms]], axis=1)
 
@@ -231,7 +231,7 @@ class EmbreeCaster:
         meshes = self._fixed | {geom: self._loose[geom] for geom in self._movable.resting}
         self._standing = _Triangles(meshes, self._simulation.data) if meshes else None
 
-    def _cast_at_planes(self, hits: Hits, origin: Array, rays: Any) -> None:
+    def _cast_to_planes(self, hits: Hits, origin: Array, rays: Any) -> None:
         data = self._simulation.data
         for geom in self._planes:
             normal = data.geom_xmat[geom].reshape(3, 3)[:, 2]

@@ -69,7 +69,7 @@ class BodyWriter:
         self._meshes = meshes
         self._mujoco = load_mujoco()
 
-    def give_mass(self, body: Any, link: Link, frames: Frames) -> None:
+    def set_mass(self, body: Any, link: Link, frames: Frames) -> None:
         """Set the mass properties of a body from its link; by default 1 kg and 1 kg m2, as in SDF.
 
         Impossible values are replaced and reported.
@@ -159,8 +159,8 @@ class BodyWriter:
         joint.actfrclimited = isfinite(limit.effort) and limit.effort > 0
         if joint.actfrclimited:
             joint.actfrcrange = [-limit.effort, limit.effort]
-        set_first(joint, "damping", max(dynamics.damping, 0.0))
-        set_first(joint, "stiffness", max(dynamics.spring_stiffness, 0.0))
+        set_coefficient(joint, "damping", max(dynamics.damping, 0.0))
+        set_coefficient(joint, "stiffness", max(dynamics.spring_stiffness, 0.0))
         joint.springref = dynamics.spring_reference
         joint.frictionloss = max(dynamics.friction, 0.0)
 
@@ -173,7 +173,9 @@ class BodyWriter:
                 geom.group = VISUAL_GROUP
                 geom.contype = geom.conaffinity = 0
                 if visual.material is not None:
-                    geom.material = self._meshes.material_of(visual) if self._meshes.has_room_for_image(geom) else ""
+                    geom.material = (
+                        self._meshes.material_of(visual) if self._meshes.has_texture_coordinates(geom) else ""
+                    )
                 if visual.material is not None or not geom.material:
                     geom.rgba = _colour(visual, _WHITE if geom.material else _GREY)
 
@@ -243,7 +245,7 @@ def _colour(visual: Visual, usual: Color) -> list[float]:
     return [min(max(value, 0.0), 1.0) for value in (red, green, blue, alpha * (1.0 - visual.transparency))]
 
 
-def set_first(element: Any, name: str, value: float) -> None:
+def set_coefficient(element: Any, name: str, value: float) -> None:
     """Set a scalar attribute of an element, or the first term if MuJoCo 4 stores a polynomial."""
     held = getattr(element, name)
     if np.ndim(held):

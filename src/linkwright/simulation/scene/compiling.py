@@ -31,11 +31,11 @@ def count_links(models: Iterable[Model]) -> int:
     count = sum(_links_in(model) for model in models)
     if count > MOST_LINKS:
         message = phrase("the world has {count} links, more than can be simulated", count=count)
-        raise LinkwrightError(Diagnostic("SIM105", message, hint=fewer_links()))
+        raise LinkwrightError(Diagnostic("SIM105", message, hint=too_many_links_hint()))
     return count
 
 
-def fewer_links() -> Phrase:
+def too_many_links_hint() -> Phrase:
     """Return the hint for a world with too many links."""
     return phrase("use at most {most} links; put shapes that never move into one link", most=MOST_LINKS)
 
@@ -74,7 +74,7 @@ def compile_scene(scene: Scene, before: tuple[Any, Any] | None = None) -> tuple[
         ) from None
 
 
-def refused_models(world: World, finder: ResourceFinder) -> dict[str, Phrase]:
+def rejected_models(world: World, finder: ResourceFinder) -> dict[str, Phrase]:
     """Return the models that MuJoCo rejects when each is compiled alone, with MuJoCo's messages.
 
     Args:

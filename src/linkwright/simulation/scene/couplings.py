@@ -23,7 +23,7 @@ def screw_coupling(spec: Any, joint: PlacedJoint) -> Iterator[Any]:
     """
     if joint.joint.type == "screw" and joint.axes:
         pitch = joint.joint.thread_pitch or 0.0
-        yield _coupled(spec, joint.name + THREAD, joint.name, pitch / tau)
+        yield _add_coupling(spec, joint.name + THREAD, joint.name, pitch / tau)
 
 
 def gearbox_coupling(spec: Any, gear: PlacedJoint, joints: Iterable[PlacedJoint]) -> Iterator[Any]:
@@ -42,10 +42,10 @@ def gearbox_coupling(spec: Any, gear: PlacedJoint, joints: Iterable[PlacedJoint]
         return
     first, second = gear.axes[0], gear.axes[-1]
     along = _sign(_in_world(gear, first[1]), parent) * _sign(_in_world(gear, second[1]), child)
-    yield _coupled(spec, child.name, parent.name, -gear.joint.gearbox_ratio * along)
+    yield _add_coupling(spec, child.name, parent.name, -gear.joint.gearbox_ratio * along)
 
 
-def _coupled(spec: Any, follower: str, leader: str, factor: float) -> Any:
+def _add_coupling(spec: Any, follower: str, leader: str, factor: float) -> Any:
     equality = spec.add_equality(type=load_mujoco().mjtEq.mjEQ_JOINT)
     equality.name1, equality.name2 = follower, leader
     equality.data[:5] = [0.0, factor, 0.0, 0.0, 0.0]

@@ -12,7 +12,7 @@ import numpy as np
 from linkwright.diagnostics import LinkwrightError
 from linkwright.geometry.single import IDENTITY, Transform, Vector3, compose
 from linkwright.sdf.actors import Actor
-from linkwright.sdf.figures import figure_of, road_of
+from linkwright.sdf.figures import actor_model, road_model
 from linkwright.sdf.frames import FrameError, Frames, PlacedLink, links_of
 from linkwright.sdf.models import Model
 from linkwright.sdf.walking import Walk
@@ -70,25 +70,25 @@ def figures_of(world: World, meshes: MeshLibrary) -> list[Figure]:
     frames, found = Frames(world), []
     taken = {model.name for model in world.models}
     for actor in world.actors:
-        actor = _renamed(actor, taken)
+        actor = _with_free_name(actor, taken)
         try:
             pose = frames.placed(actor.pose)
-            model = figure_of(actor, _hips(actor, meshes))
+            model = actor_model(actor, _skin_origin(actor, meshes))
             links = tuple(links_of(model, Frames(model), IDENTITY, actor.name))
         except FrameError:
             continue
         walk = Walk(actor.script)
         origin = pose if relative else IDENTITY
-        begin = compose(origin, walk.pose(0.0)) if walk.is_somewhere else pose
-        found.append(Figure(model, begin, walk if walk.is_somewhere else None, origin, links))
+        begin = compose(origin, walk.pose(0.0)) if walk.has_waypoints else pose
+        found.append(Figure(model, begin, walk if walk.has_waypoints else None, origin, links))
     for road in world.roads:
-        model = _renamed(road_of(road), taken)
+        model = _with_free_name(road_model(road), taken)
         links = tuple(links_of(model, Frames(model), IDENTITY, model.name))
         found.append(Figure(model, IDENTITY, None, IDENTITY, links))
     return found
 
 
-def _renamed(item: T, taken: set[str]) -> T:
+def _with_free_name(item: T, taken: set[str]) -> T:
     """Return an actor or road under a name that is not in `taken`, and add the name to `taken`."""
     while item.name in taken:
         item = replace(item, name=f"{item.name}~")
@@ -105,7 +105,7 @@ def draw(figure: Figure, spec: Any, writer: BodyWriter) -> None:
         writer.add_visuals(body, placed.link, placed.frames, fixed=True)
 
 
-def let_walk(figures: Iterable[Figure], model: Any, data: Any, seconds: float) -> None:
+def move_actors(figures: Iterable[Figure], model: Any, data: Any, seconds: float) -> None:
     """Set the poses of actors in MuJoCo's data for a simulated time in s."""
     for figure in figures:
         if figure.walk is None:
@@ -115,7 +115,7 @@ def let_walk(figures: Iterable[Figure], model: Any, data: Any, seconds: float) -
             _put(int(model.body(placed.name).mocapid[0]), compose(pose, placed.pose), data)
 
 
-def put_kinematic(structure: Structure, moved: Transform, model: Any, data: Any) -> bool:
+def set_kinematic_poses(structure: Structure, moved: Transform, model: Any, data: Any) -> bool:
     """Set the poses of a model's kinematic links in MuJoCo's data; return whether there are any.
 
     Args:
@@ -138,7 +138,7 @@ def _put(place: int, pose: Transform, data: Any) -> None:
     data.mocap_quat[place] = qw, qx, qy, qz
 
 
-def _hips(actor: Actor, meshes: MeshLibrary) -> Vector3 | None:
+def _skin_origin(actor: Actor, meshes: MeshLibrary) -> Vector3 | None:
     """Return the origin of a skin's skeleton in m; None if the mesh file is missing.
 
     The origin is zero if there is no skeleton.

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, display_path, phrase
 from linkwright.geometry.arrays import Array
-from linkwright.geometry.decomposition import convex_pieces, thickened
+from linkwright.geometry.decomposition import convex_pieces, thicken
 from linkwright.geometry.mesh_files import BadMeshError, declared_triangles, file_resolver
 from linkwright.geometry.mesh_parts import MeshPart, Triangles, read_parts, read_png
 from linkwright.geometry.meshes import read_mesh, unreadable
@@ -79,11 +79,11 @@ class MeshLibrary:
             fixed: whether the body never moves; the mesh of a moving body is replaced by its hull.
         """
         if isinstance(shape, Heightmap):
-            return self._heightmap(body, shape, pose, element)
+            return self._add_heightmap(body, shape, pose, element)
         key = ("collision", shape, _version(self._path(shape, element)), fixed)
         if key not in self._assets:
             self._assets[key] = [self._hull(corners) for corners in self._pieces(shape, element, fixed=fixed)]
-        return [self._geom(body, pose, name) for name in self._assets[key]]
+        return [self._add_geom(body, pose, name) for name in self._assets[key]]
 
     def visuals(self, body: Any, shape: Shape, pose: Transform, element: Element | None) -> list[Any]:
         """Add a visual, with the materials of its mesh file, to a body, and return the added geoms.
@@ -91,7 +91,7 @@ class MeshLibrary:
         The arguments are those of `collisions`.
         """
         if isinstance(shape, Heightmap):
-            return self._heightmap(body, shape, pose, element)
+            return self._add_heightmap(body, shape, pose, element)
         path = self._path(shape, element)
         key = ("visual", shape, _version(path))
         if key not in self._assets:
@@ -99,9 +99,9 @@ class MeshLibrary:
                 self._assets[key] = [] if path is None else list(self._drawn(shape, path, element))
             else:
                 self._assets[key] = [self._hull(corners) for corners in self._pieces(shape, element, fixed=True)]
-        return [self._geom(body, pose, name) for name in self._assets[key]]
+        return [self._add_geom(body, pose, name) for name in self._assets[key]]
 
-    def _geom(self, body: Any, pose: Transform, mesh: str) -> Any:
+    def _add_geom(self, body: Any, pose: Transform, mesh: str) -> Any:
         geom = body.add_geom(type=load_mujoco().mjtGeom.mjGEOM_MESH, meshname=mesh)
         material = f"{mesh} look"
         if self.spec.material(material) is not None:
@@ -136,7 +136,7 @@ class MeshLibrary:
         if np.prod(shape.scale) < 0:
             faces = faces[:, ::-1]
         pieces = convex_pieces(vertices, faces, _MOST_PIECES) if fixed else [vertices[np.unique(faces)]]
-        return [thickened(corners) for corners in pieces]
+        return [thicken(corners) for corners in pieces]
 
     def _drawn(self, shape: Mesh, path: Path, element: Element | None) -> Iterator[str]:
         try:
@@ -152,7 +152,7 @@ class MeshLibrary:
                 continue
             faces = faces[:, ::-1] if np.prod(shape.scale) < 0 else faces
             name = self._seen(positions, faces, triangles.coordinates)
-            self._give_look(name, part)
+            self._add_material(name, part)
             yield name
 
     def _seen(self, positions: Array, faces: Any, coordinates: Array | None) -> str:
@@ -181,17 +181,17 @@ class MeshLibrary:
             self._assets[key] = [self._seen(triangles.positions, faces, triangles.coordinates)]
         if isinstance(shape, Plane):
             pose = compose(pose, (0.0, 0.0, 0.0, *rotation_from_z(shape.normal)))
-        return [self._geom(body, pose, name) for name in self._assets[key]]
+        return [self._add_geom(body, pose, name) for name in self._assets[key]]
 
-    def _give_look(self, mesh: str, part: MeshPart) -> None:
+    def _add_material(self, mesh: str, part: MeshPart) -> None:
         if part.own is None:
             return
         material = self.spec.add_material(name=f"{mesh} look")
         material.rgba = [*part.own.color, 1.0]
         if part.own.image is not None and part.triangles.coordinates is not None:
-            self._give_image(material, part.own.image)
+            self._add_texture(material, part.own.image)
 
-    def _give_image(self, material: Any, image: bytes) -> None:
+    def _add_texture(self, material: Any, image: bytes) -> None:
         """Add a PNG texture to a material of MuJoCo.
 
         Equal images share one texture, because each compilation decodes every texture.
@@ -204,7 +204,7 @@ class MeshLibrary:
             self._textures[image] = texture.name
         material.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = self._textures[image]
 
-    def has_room_for_image(self, geom: Any) -> bool:
+    def has_texture_coordinates(self, geom: Any) -> bool:
         """Return whether a geom is a mesh with texture coordinates."""
         return geom.meshname in self._mapped
 
@@ -228,7 +228,7 @@ class MeshLibrary:
             image = read_png(path)
             if image is not None:
                 material = self.spec.add_material(name=f"image {len(self.spec.materials)}", emission=float(glows))
-                self._give_image(material, image)
+                self._add_texture(material, image)
                 self._assets[key] = [material.name]
         return "".join(self._assets[key])
 
@@ -264,7 +264,7 @@ class MeshLibrary:
         mesh.uservert = _flat(corners)
         return name
 
-    def _heightmap(self, body: Any, shape: Heightmap, pose: Transform, element: Element | None) -> list[Any]:
+    def _add_heightmap(self, body: Any, shape: Heightmap, pose: Transform, element: Element | None) -> list[Any]:
         path = self._path(shape, element)
         if path is None:
             return []

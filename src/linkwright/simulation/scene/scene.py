@@ -233,7 +233,7 @@ class Scene:
                 added.parts.append(body)
         added.files = dict(self._meshes.used)
         for held in structure.links:
-            added.parts += self._mimicry(held.joint)
+            added.parts += self._mimic_constraints(held.joint)
             if held.joint is not None and held.joint.name in self.joints:
                 added.parts += screw_coupling(self.spec, held.joint)
         for joint in (*structure.loops, *connected.loops):
@@ -241,7 +241,7 @@ class Scene:
             if joint.joint.type == "gearbox":
                 added.parts += gearbox_coupling(self.spec, joint, self._moving((name, *connected.hangs_on)))
         added.parts += self._strangers(structure)
-        added.parts += self._neighbours(connected)
+        added.parts += self._neighbour_exclusions(connected)
         return added
 
     def place(self, name: str, pose: Transform) -> None:
@@ -272,7 +272,7 @@ class Scene:
             KeyError: there is no model with this name.
             ValueError: another model is attached to this model.
         """
-        hanging = self.hanging_on(name)
+        hanging = self.attached_models(name)
         if hanging:
             raise ValueError(f"{', '.join(hanging)} must be removed before {name}")
         model = self.models.pop(name)
@@ -284,7 +284,7 @@ class Scene:
             if held.joint is not None:
                 self.joints.pop(held.joint.name, None)
 
-    def hanging_on(self, name: str) -> list[str]:
+    def attached_models(self, name: str) -> list[str]:
         """Return the models that joints of the world attach to a model, directly or indirectly.
 
         The models are in the order in which they were added.
@@ -360,7 +360,7 @@ class Scene:
             pose: the pose of the child in the frame of the parent.
         """
         name = _weld_name(parent, child)
-        equality = self._equality(self._mujoco.mjtEq.mjEQ_WELD, (parent, child))
+        equality = self._add_equality(self._mujoco.mjtEq.mjEQ_WELD, (parent, child))
         x, y, z, qx, qy, qz, qw = pose
         equality.name = name
         equality.data[:10] = [0.0, 0.0, 0.0, x, y, z, qw, qx, qy, qz]
@@ -434,7 +434,7 @@ class Scene:
         set_pose(body, compose(invert(above), placed.pose))
         fixed = placed.static or driven
         if not fixed:
-            self._writer.give_mass(body, link, placed.frames)
+            self._writer.set_mass(body, link, placed.frames)
             body.gravcomp = 0.0 if link.gravity else 1.0
             if joint is None:
                 body.add_freejoint().name = f"{placed.name}#free"
@@ -452,7 +452,7 @@ class Scene:
         held = (link for name in models for link in self.models[name].structure.links)
         return [link.joint for link in held if link.joint is not None and link.joint.name in self.joints]
 
-    def _mimicry(self, joint: PlacedJoint | None) -> Iterator[Any]:
+    def _mimic_constraints(self, joint: PlacedJoint | None) -> Iterator[Any]:
         """Yield equality constraints for the mimic axes of a joint."""
         if joint is None or joint.name not in self.joints:
             return
@@ -477,11 +477,11 @@ class Scene:
         kinds, ends = self._mujoco.mjtEq, (joint.child, joint.parent)
         points = hinge_anchors(joint, _ANCHORS_APART) if joint.axes else [joint.pose[:3]]
         if joint.joint.type == "fixed":
-            yield self._equality(kinds.mjEQ_WELD, ends)
+            yield self._add_equality(kinds.mjEQ_WELD, ends)
         elif joint.joint.type in ("revolute", "hinge", "continuous", "ball"):
             into_child = IDENTITY if joint.child == WORLD else invert(poses[joint.child])
             for point in points[: 1 if joint.joint.type == "ball" else 2]:
-                equality = self._equality(kinds.mjEQ_CONNECT, ends)
+                equality = self._add_equality(kinds.mjEQ_CONNECT, ends)
                 moved = rotate(into_child[3:], point)
                 equality.data[:3] = [a + b for a, b in zip(moved, into_child[:3], strict=True)]
                 yield equality
@@ -493,7 +493,7 @@ class Scene:
             )
             self._warn("SIM118", message, joint.joint.element)
 
-    def _equality(self, kind: Any, ends: tuple[str, str]) -> Any:
+    def _add_equality(self, kind: Any, ends: tuple[str, str]) -> Any:
         equality = self.spec.add_equality(type=kind, objtype=self._mujoco.mjtObj.mjOBJ_BODY)
         equality.solref = [_LOOP_STEPS * self.step, 1.0]
         equality.name1, equality.name2 = ends[0], "" if ends[1] == WORLD else ends[1]
@@ -506,7 +506,7 @@ class Scene:
             if not (_collides(one.link.self_collide, one.model) and _collides(other.link.self_collide, other.model)):
                 yield self.spec.add_exclude(bodyname1=one.name, bodyname2=other.name)
 
-    def _neighbours(self, connected: Connected) -> Iterator[Any]:
+    def _neighbour_exclusions(self, connected: Connected) -> Iterator[Any]:
         """Yield contact exclusions for pairs of links that joints of the world connect."""
         own = {held.link.name for held in connected.structure.links}
         hung = (held.joint for held in connected.structure.links if held.joint is not None)

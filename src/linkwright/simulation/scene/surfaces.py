@@ -39,7 +39,11 @@ def apply_surface(geom: Any, surface: Surface) -> None:
         make_slippery(geom)
     if surface.torsional is not None and surface.torsional.coefficient > 0:
         geom.condim = 4
-        geom.friction = [geom.friction[0], surface.torsional.coefficient * _patch(surface), geom.friction[2]]
+        geom.friction = [
+            geom.friction[0],
+            surface.torsional.coefficient * _contact_patch_radius(surface),
+            geom.friction[2],
+        ]
     if surface.restitution > 0:
         geom.userdata = [min(surface.restitution, 1.0), surface.bounce_threshold]
     if surface.collide_without_contact:
@@ -112,7 +116,7 @@ def _priority(mu: float) -> int:
     return 2 * round(1e6 / (1.0 + mu))
 
 
-def _patch(surface: Surface) -> float:
+def _contact_patch_radius(surface: Surface) -> float:
     """Return the radius of the contact patch in m.
 
     MuJoCo's coefficient of torsional friction is a length: SDF's coefficient multiplied by this radius.

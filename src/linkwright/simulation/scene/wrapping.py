@@ -45,23 +45,26 @@ def textured_mesh(shape: Shape) -> Triangles | None:
     match shape:
         case Box(size) if min(size) > 0:
             half = np.array(size) / 2
-            return _joined([_sheet(np.array(side, dtype=np.float64) * half, _SIDE) for side in _SIDES])
+            return _joined([_rectangle_mesh(np.array(side, dtype=np.float64) * half, _SIDE) for side in _SIDES])
         case Plane(_, (x, y)) if min(x, y) > 0:
-            return _sheet(np.array([[0.0, 0.0, 0.0], [x / 2, 0.0, 0.0], [0.0, y / 2, 0.0]]), _FLOOR)
+            return _rectangle_mesh(np.array([[0.0, 0.0, 0.0], [x / 2, 0.0, 0.0], [0.0, y / 2, 0.0]]), _FLOOR)
         case Cylinder(radius, length) if radius > 0 and length > 0:
             end = length / 2
-            tube = _rings([(radius, -end, 0.0), (radius, end, 1.0)])
-            caps = (_rings([(radius, end, 1.0), (0.0, end, 0.0)]), _rings([(0.0, -end, 0.0), (radius, -end, 0.0)]))
+            tube = _revolution_mesh([(radius, -end, 0.0), (radius, end, 1.0)])
+            caps = (
+                _revolution_mesh([(radius, end, 1.0), (0.0, end, 0.0)]),
+                _revolution_mesh([(0.0, -end, 0.0), (radius, -end, 0.0)]),
+            )
             return _joined([tube, *caps])
         case Sphere(radius) if radius > 0:
             downs = [down / _DOWN for down in reversed(range(_DOWN + 1))]
-            upright = _rings([(radius * sin(down * pi), radius * cos(down * pi), down) for down in downs])
+            upright = _revolution_mesh([(radius * sin(down * pi), radius * cos(down * pi), down) for down in downs])
             faces = upright.indices.reshape(-1, 3)[:, ::-1]  # Exchanging two axes reverses the winding.
             return replace(upright, positions=upright.positions[:, [0, 2, 1]], indices=faces.ravel())
     return None
 
 
-def _sheet(side: Array, count: int) -> Triangles:
+def _rectangle_mesh(side: Array, count: int) -> Triangles:
     """Return a rectangle as a mesh.
 
     Args:
@@ -72,10 +75,10 @@ def _sheet(side: Array, count: int) -> Triangles:
     down, right = (array.reshape(-1, 1) for array in np.meshgrid(share, share, indexing="ij"))
     middle, to_right, upwards = side
     positions = middle + (2 * right - 1) * to_right + (1 - 2 * down) * upwards
-    return _woven(positions, np.hstack([right, down]), count)
+    return _grid_mesh(positions, np.hstack([right, down]), count)
 
 
-def _rings(rings: Sequence[tuple[float, float, float]]) -> Triangles:
+def _revolution_mesh(rings: Sequence[tuple[float, float, float]]) -> Triangles:
     """Return a solid of revolution about z as a mesh.
 
     `rings` has the radius, height and texture row of each ring, from the top.
@@ -84,10 +87,10 @@ def _rings(rings: Sequence[tuple[float, float, float]]) -> Triangles:
     radius, height, down = (np.repeat(item, _AROUND + 1) for item in np.array(rings).T)
     turn = np.tile(turns, len(rings))
     positions = np.stack([radius * np.sin(turn), radius * np.cos(turn), height], axis=1)
-    return _woven(positions, np.stack([turn / (2 * pi), down], axis=1), _AROUND)
+    return _grid_mesh(positions, np.stack([turn / (2 * pi), down], axis=1), _AROUND)
 
 
-def _woven(positions: Array, coordinates: Array, columns: int) -> Triangles:
+def _grid_mesh(positions: Array, coordinates: Array, columns: int) -> Triangles:
     """Return the mesh of the triangles between rows of vertices, without degenerate triangles."""
     start = np.arange(len(positions) - columns - 1).reshape(-1, columns + 1)[:, :-1].ravel()
     below = start + columns + 1

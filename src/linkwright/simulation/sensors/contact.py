@@ -50,12 +50,12 @@ class ContactSensor:
         self._mount = mount
         self._simulation = mount.simulation
         self._wanted = {f"{mount.link}{SEPARATOR}{collision.rpartition(SEPARATOR)[2]}" for collision in collisions}
-        self._mine = GeomTable(self._simulation, self._listened)
+        self._mine = GeomTable(self._simulation, self._is_sensed_by_geom)
 
-    def _listened(self, names: list[str]) -> list[float]:
-        return [float(self._listens(part_of(name))) for name in names]
+    def _is_sensed_by_geom(self, names: list[str]) -> list[float]:
+        return [float(self._is_sensed(part_of(name))) for name in names]
 
-    def _listens(self, part: str) -> bool:
+    def _is_sensed(self, part: str) -> bool:
         name, mark, _ = part.partition(_MARK)
         if not mark:
             return False

@@ -22,7 +22,7 @@ from linkwright.simulation.scene.bodies import COLLISION_GROUP, VISUAL_GROUP
 from linkwright.simulation.sensors.mount import GeomTable, Mount, part_of, parts_of
 from linkwright.simulation.sensors.noise import NoiseSource
 
-_A_LITTLE = 1e-9
+_SURFACE_GAP = 1e-9
 """The step in m behind a surface, so that a ray does not hit it again."""
 _SURFACES = 64
 """The greatest number of surfaces of its own robot that a ray passes before its range begins."""
@@ -71,7 +71,7 @@ class LidarSensor:
         self._noise = NoiseSource(lidar.noise, generator)
         self._groups = np.zeros(GROUPS, dtype=np.uint8)
         self._groups[VISUAL_GROUP if sees_visuals else COLLISION_GROUP] = 1
-        self._retro = GeomTable(self._simulation, self._retros)
+        self._retro = GeomTable(self._simulation, self._retro_by_geom)
         self._own = GeomTable(self._simulation, self._owned)
 
     @cached_property
@@ -119,7 +119,7 @@ class LidarSensor:
         """
         simulation, geom = self._simulation, np.zeros(1, dtype=np.int32)
         for _ in range(_SURFACES):
-            start = reached + _A_LITTLE
+            start = reached + _SURFACE_GAP
             further = self._mujoco.mj_ray(
                 simulation.model, simulation.data, origin + start * ray, ray, self._groups, 1, body, geom
             )
@@ -134,6 +134,6 @@ class LidarSensor:
         prefix = self._mount.link.partition("::")[0] + "::"
         return [float(name.startswith(prefix)) for name in names]
 
-    def _retros(self, names: list[str]) -> list[float]:
+    def _retro_by_geom(self, names: list[str]) -> list[float]:
         retros = {name: part.laser_retro for name, part in parts_of(self._simulation) if part.laser_retro}
         return [retros.get(part_of(name), 0.0) for name in names]

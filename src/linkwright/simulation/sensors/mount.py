@@ -58,10 +58,10 @@ class Mount:
         Both are in the axes of the world.
         """
         linear, angular = self.simulation.link_velocity(self.link)
-        rates = _three(angular)
+        rates = _to_vector(angular)
         if self._is_at_origin:
-            return _three(linear), rates
-        return added(_three(linear), cross(rates, self._arm())), rates
+            return _to_vector(linear), rates
+        return added(_to_vector(linear), cross(rates, self._arm())), rates
 
     @property
     def _is_at_origin(self) -> bool:
@@ -81,7 +81,7 @@ class Mount:
         simulation, mujoco, result = self.simulation, load_mujoco(), np.zeros(6)
         kind = mujoco.mjtObj.mjOBJ_XBODY
         mujoco.mj_objectAcceleration(simulation.model, simulation.data, kind, self.body, result, 0)
-        angular = _three(simulation.link_velocity(self.link)[1])
+        angular = _to_vector(simulation.link_velocity(self.link)[1])
         p, q, r, x, y, z = result.tolist()
         if self._is_at_origin:
             return angular, (x, y, z)
@@ -89,7 +89,7 @@ class Mount:
         return angular, added(added((x, y, z), cross((p, q, r), arm)), cross(angular, cross(angular, arm)))
 
 
-def _three(values: Array) -> Vector3:
+def _to_vector(values: Array) -> Vector3:
     x, y, z = values.tolist()
     return x, y, z
 

@@ -66,7 +66,7 @@ class NoiseSource:
         if self.silent:
             return values
         if noise.dynamic_bias_stddev > 0 and noise.dynamic_bias_correlation_time > 0 and period > 0:
-            self._wander(period)
+            self._drift_bias(period)
         noisy: Array = values + self._bias + self._wandering
         if noise.stddev > 0 or noise.mean:
             noisy = noisy + self._generator.normal(noise.mean, abs(noise.stddev), np.shape(values) or None)
@@ -74,7 +74,7 @@ class NoiseSource:
             noisy = np.round(noisy / noise.precision) * noise.precision
         return noisy
 
-    def _wander(self, period: float) -> None:
+    def _drift_bias(self, period: float) -> None:
         stddev, tau = self._noise.dynamic_bias_stddev, self._noise.dynamic_bias_correlation_time
         step = sqrt(stddev**2 * tau / 2 * (1 - exp(-2 * period / tau)))
         self._wandering = exp(-period / tau) * self._wandering + self._generator.normal(0.0, step)

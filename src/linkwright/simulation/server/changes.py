@@ -101,7 +101,7 @@ def changes_to(world: World, running: Mapping[str, SceneModel], owned: Collectio
         try:
             pose = frames.pose(model.name)
         except FrameError as error:
-            raise _not_simulated(model.name, error) from error
+            raise _simulation_error(model.name, error) from error
         before = running.get(model.name)
         if before is None:
             new.append(AddedModel(model, model.name, pose))
@@ -161,7 +161,7 @@ def add_models(simulation: Simulation, added: Sequence[AddedModel]) -> None:
         for name in reversed(came):
             if name in simulation.scene.models:
                 simulation.delete(name)
-        raise _not_simulated(came[-1], error) from error
+        raise _simulation_error(came[-1], error) from error
 
 
 def surroundings(world: World) -> tuple[object, ...]:
@@ -171,7 +171,7 @@ def surroundings(world: World) -> tuple[object, ...]:
     return world.name, world.spherical_coordinates, world.magnetic_field, world.wind, physics.max_step_size, joints
 
 
-def _not_simulated(name: str, error: Exception) -> LinkwrightError:
+def _simulation_error(name: str, error: Exception) -> LinkwrightError:
     if isinstance(error, LinkwrightError):
         return error
     reason: Phrase = foreign(error)

@@ -37,7 +37,7 @@ class Entity:
     unread: tuple[Diagnostic, ...] = ()
 
 
-def entity_from(text: str, finder: ResourceFinder, library: DescriptionLibrary) -> Entity:
+def read_entity(text: str, finder: ResourceFinder, library: DescriptionLibrary) -> Entity:
     """Return the model that URDF or SDF describes.
 
     Args:

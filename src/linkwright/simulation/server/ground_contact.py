@@ -17,7 +17,7 @@ _UPWARD = 0.7
 """The least vertical component of a contact's direction; a wall does not lift a model inside it."""
 
 
-def stand_up(simulation: Simulation, name: str) -> None:
+def lift_onto_ground(simulation: Simulation, name: str) -> None:
     """Lift a free model until it no longer penetrates static bodies.
 
     Very small and very large depths are ignored.
@@ -35,7 +35,7 @@ def stand_up(simulation: Simulation, name: str) -> None:
     simulation.place({name: (x, y, z + height, qx, qy, qz, qw)})
 
 
-def touches_nothing(simulation: Simulation, name: str) -> list[Diagnostic]:
+def collision_warnings(simulation: Simulation, name: str) -> list[Diagnostic]:
     """Return a warning (SIM143) if a free model has no collisions, otherwise an empty list.
 
     Raises:

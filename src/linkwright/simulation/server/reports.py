@@ -11,7 +11,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.descriptions.conversion import with_addresses
+from linkwright.descriptions.conversion import with_changed_uris
 from linkwright.geometry.single import Transform
 from linkwright.graph import CLOCK_QOS, LATCHED_QOS
 from linkwright.graph.stepped.node import SteppedNode
@@ -91,7 +91,7 @@ class Reports:
         return model, save_model_of_world(self._addressed(placed))
 
     def _addressed(self, part: T) -> T:
-        addressed: T = with_addresses(part, Path.cwd(), self._address)
+        addressed: T = with_changed_uris(part, Path.cwd(), self._address)
         return addressed
 
     def watch(self, factor: Callable[[], float]) -> None:

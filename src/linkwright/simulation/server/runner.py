@@ -111,18 +111,18 @@ class Runner:
         exchange, dispatcher = self._server.exchange, self._server.node.graph.dispatcher
         self._wake()
         while not self._ends:
-            self._safely(exchange.run_commands)
+            self._call_logged(exchange.run_commands)
             wait = _IDLE
             if not self.paused:
-                self._safely(self._advance)
+                self._call_logged(self._advance)
                 wait = 0.0 if self.paused else self._ahead()
             self._measure()
-            self._safely(self._watch)
+            self._call_logged(self._watch)
             exchange.deliver(dispatcher)
             if wait > 0:
                 exchange.has_commands.wait(wait)
 
-    def _safely(self, work: Callable[[], object]) -> None:
+    def _call_logged(self, work: Callable[[], object]) -> None:
         """Call a function; if it raises an error, log the error and pause the simulation.
 
         The simulation can then be reset.

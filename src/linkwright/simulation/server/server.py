@@ -20,7 +20,7 @@ from linkwright.sdf.comparison import alike
 from linkwright.sdf.models import Model
 from linkwright.sdf.plugins import Plugin, library_name, original_library
 from linkwright.sdf.resources import ResourceFinder
-from linkwright.sdf.saved import as_saved
+from linkwright.sdf.saved import with_saved_state
 from linkwright.sdf.worlds import World
 from linkwright.simulation.plugins.alternatives import alternative_to
 from linkwright.simulation.plugins.bridged import BridgedTopics
@@ -30,18 +30,18 @@ from linkwright.simulation.plugins.parameters import parameters_from
 from linkwright.simulation.plugins.places import model_plugins, world_plugins
 from linkwright.simulation.plugins.plugin import PluginClass, PluginPlace, SimulatedPlugin
 from linkwright.simulation.plugins.registry import (
+    is_built_in,
     is_of_gz,
-    needs_nothing,
     plugin_class,
     sensor_class,
 )
 from linkwright.simulation.plugins.ros_element import node_of
 from linkwright.simulation.scene.scene import SceneModel
 from linkwright.simulation.server.changes import AddedModel, add_models, changes_to, check, surroundings
-from linkwright.simulation.server.ground_contact import stand_up, touches_nothing
+from linkwright.simulation.server.ground_contact import collision_warnings, lift_onto_ground
 from linkwright.simulation.server.motion import motion_of, resume
 from linkwright.simulation.server.overlaps import overlaps
-from linkwright.simulation.server.unsimulated import unsimulated, unsimulated_in
+from linkwright.simulation.server.unsimulated import unsimulated_elements, unsimulated_in
 from linkwright.simulation.simulation import Simulation
 
 _WORLD = ""
@@ -109,7 +109,7 @@ class SimulationServer:
     def start(self) -> None:
         """Start the plugins of the world and of its models."""
         self.report(self.simulation.scene.diagnostics)
-        self._warn_unsimulated(unsimulated(self.simulation.world))
+        self._warn_unsimulated(unsimulated_elements(self.simulation.world))
         self._load(_WORLD, world_plugins(self.simulation.world, self._options.systems), "")
         for scene_model in tuple(self.simulation.scene.models.values()):
             self._load(scene_model.name, model_plugins(self.simulation.world, scene_model.model, scene_model.name), "")
@@ -150,9 +150,9 @@ class SimulationServer:
         if name in self.simulation.scene.models:
             raise LinkwrightError(Diagnostic("SIM102", phrase("a model '{name}' already exists", name=name)))
         self._exchange((), (AddedModel(model, name, pose, namespace),))
-        stand_up(self.simulation, name)
+        lift_onto_ground(self.simulation, name)
         self.report(overlaps(self.simulation, (name,)))
-        self.report(touches_nothing(self.simulation, name), name)
+        self.report(collision_warnings(self.simulation, name), name)
         self._warn_unsimulated(unsimulated_in(model))
 
     def renew(self, model: Model, name: str) -> None:
@@ -170,7 +170,7 @@ class SimulationServer:
         added = AddedModel(model, name, before.pose, self._namespaces.get(name, ""), here=True)
         check(self.simulation.world, self.simulation, (added,), self.simulation.finder)
         self._exchange((), (replace(added, motion=motion_of(self.simulation, name)),))
-        self.report(touches_nothing(self.simulation, name), name)
+        self.report(collision_warnings(self.simulation, name), name)
 
     def load(self, world: World, finder: ResourceFinder, allow: Callable[[Sequence[Diagnostic]], object]) -> None:
         """Replace the running world by another one.
@@ -188,7 +188,7 @@ class SimulationServer:
                 simulated. Nothing has changed.
         """
         simulation, before = self.simulation, self.simulation.world
-        wanted = as_saved(world)
+        wanted = with_saved_state(world)
         changes = changes_to(wanted, simulation.scene.models, self._of_world)
         if surroundings(before) != surroundings(wanted):
             changes = changes.with_all(simulation.scene.models, self._namespaces)
@@ -213,7 +213,7 @@ class SimulationServer:
         simulation = self.simulation
         count = len(simulation.scene.diagnostics)
         before: dict[str, list[SimulatedPlugin[object]]] = {}
-        gone, added = tuple(gone), (*added, *self._hanging_on({*gone, *(change.name for change in added)}))
+        gone, added = tuple(gone), (*added, *self._attached_models({*gone, *(change.name for change in added)}))
         leaving = {*gone, *(change.name for change in added)}
         for name in [name for name in reversed(simulation.scene.models) if name in leaving]:
             before[name] = self._plugins.pop(name, [])
@@ -233,13 +233,15 @@ class SimulationServer:
             self._load(change.name, places, change.namespace, before[change.name] if continues else ())
         self._changed()
 
-    def _hanging_on(self, names: Collection[str]) -> Iterator[AddedModel]:
+    def _attached_models(self, names: Collection[str]) -> Iterator[AddedModel]:
         """Yield the models to add again because joints of the world attach them to the named models.
 
         They continue at their current poses.
         """
         models = self.simulation.scene.models
-        for name in {item: None for one in names & models.keys() for item in self.simulation.scene.hanging_on(one)}:
+        for name in {
+            item: None for one in names & models.keys() for item in self.simulation.scene.attached_models(one)
+        }:
             if name not in names:
                 motion = motion_of(self.simulation, name)
                 scene_model, namespace = models[name], self._namespaces.get(name, "")
@@ -501,4 +503,4 @@ def _kinds(place: PluginPlace) -> list[str]:
     """
     if place.plugin is None:
         return [] if place.sensor is None else [place.sensor.sensor.type]
-    return [] if needs_nothing(place.plugin.filename) else [place.plugin.filename]
+    return [] if is_built_in(place.plugin.filename) else [place.plugin.filename]

@@ -24,7 +24,7 @@ from linkwright.simulation.plugins.entities import (
     refusal_text,
     transform_in,
 )
-from linkwright.simulation.server.entities import Entity, entity_from
+from linkwright.simulation.server.entities import Entity, read_entity
 from linkwright.simulation.server.loading import WorldLoader
 from linkwright.simulation.server.server import SimulationServer
 from linkwright.simulation.server.worlds import LoadedWorld
@@ -119,7 +119,7 @@ class Services:
         Raises:
             LinkwrightError: the description has errors, or the model cannot be added.
         """
-        return self._put(entity_from(text, self._server.simulation.finder, self._library), name, pose, namespace)
+        return self._put(read_entity(text, self._server.simulation.finder, self._library), name, pose, namespace)
 
     def _put(self, entity: Entity, name: str, pose: Transform, namespace: str) -> str:
         placed = compose(pose, transform_of(entity.model.pose.pose))
@@ -140,7 +140,7 @@ class Services:
         Raises:
             LinkwrightError: the description has errors.
         """
-        entity = entity_from(text, self._server.simulation.finder, self._library)
+        entity = read_entity(text, self._server.simulation.finder, self._library)
 
         def renew() -> None:
             try:
@@ -154,7 +154,7 @@ class Services:
     def _spawn(self, request: Any, response: Any) -> Any:
         def spawn() -> str:
             pose = compose(self._entities.frame(request.reference_frame), transform_in(request.initial_pose))
-            entity = entity_from(request.xml, self._server.simulation.finder, self._library)
+            entity = read_entity(request.xml, self._server.simulation.finder, self._library)
             if entity.unread:
                 raise LinkwrightError(*entity.unread)
             name = self._put(entity, request.name, pose, request.robot_namespace)

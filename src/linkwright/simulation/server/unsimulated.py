@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from linkwright.sdf.models import Model
 from linkwright.sdf.reader import OPEN
 from linkwright.sdf.worlds import World
-from linkwright.simulation.plugins.registry import needs_nothing
+from linkwright.simulation.plugins.registry import is_built_in
 from linkwright.xmltree import Element
 
 _NOWHERE = frozenset({"audio_source", "fluid_added_mass", "gripper", "particle_emitter", "projector", "soft_contact"})
@@ -16,7 +16,7 @@ _IN = frozenset({("actor", "animation"), ("geometry", "image")})
 _WITHOUT_PLUGINS = frozenset({"actor", "visual"})
 
 
-def unsimulated(world: World) -> list[str]:
+def unsimulated_elements(world: World) -> list[str]:
     """Return the names of the elements in a world that are not simulated, sorted.
 
     Examples are ``<projector>`` and ``libwalk.so in <actor>``.
@@ -55,7 +55,7 @@ def _name(parent: Element, child: Element) -> str:
         return f"<{child.tag}> in <{parent.tag}>"
     if child.tag == "plugin" and parent.tag in _WITHOUT_PLUGINS:
         filename = child.attributes.get("filename", "")
-        return "" if needs_nothing(filename) else f"{filename} in <{parent.tag}>"
+        return "" if is_built_in(filename) else f"{filename} in <{parent.tag}>"
     return ""
 
 

@@ -13,7 +13,7 @@ from linkwright.packages import PackageFinder
 from linkwright.sdf.link_counts import has_more_links
 from linkwright.sdf.resources import ResourceFinder
 from linkwright.sdf.worlds import World
-from linkwright.simulation.scene.compiling import MOST_LINKS, count_links, fewer_links
+from linkwright.simulation.scene.compiling import MOST_LINKS, count_links, too_many_links_hint
 from linkwright.xmltree import Overlay
 from linkwright.xmltree.reader import read_bytes
 
@@ -64,7 +64,7 @@ def load_world(name: str, text: str | None = None, environment: Mapping[str, str
     if text is None:
         path = _found(name, resources)
     if path.suffix != ".xacro" and (text is not None or path.is_file()):
-        _refuse_crowd(read_bytes(path) if text is None else text)
+        _check_link_count(read_bytes(path) if text is None else text)
     description = examine_world(
         path, packages=finder, environment=environment, overlay=None if text is None else Overlay({path: text})
     )
@@ -80,10 +80,10 @@ def load_world(name: str, text: str | None = None, environment: Mapping[str, str
     return LoadedWorld(world, resources, description.diagnostics, path, description.files, read_ns)
 
 
-def _refuse_crowd(text: bytes | str) -> None:
+def _check_link_count(text: bytes | str) -> None:
     if has_more_links(text, MOST_LINKS):
         message = phrase("a world of more than {most} links cannot be simulated", most=MOST_LINKS)
-        raise LinkwrightError(Diagnostic("SIM105", message, hint=fewer_links()))
+        raise LinkwrightError(Diagnostic("SIM105", message, hint=too_many_links_hint()))
 
 
 def _found(name: str, finder: ResourceFinder) -> Path:

@@ -47,15 +47,15 @@ class Wrenches:
         self._acting.setdefault(link, []).append(wrench)
         if not self._scheduled:
             self._scheduled = True
-            self._simulation.call_every(0, self._act)
-        self._act()
+            self._simulation.call_every(0, self._apply_wrenches)
+        self._apply_wrenches()
 
     def clear(self, link: str) -> None:
         """Remove all wrenches on a link."""
         if self._acting.pop(link, None) and link in self._simulation.scene.bodies:
             self._simulation.push(link, (0.0, 0.0, 0.0))
 
-    def _act(self) -> None:
+    def _apply_wrenches(self) -> None:
         now, simulation = self._simulation.time, self._simulation
         for link, wrenches in tuple(self._acting.items()):
             left = [wrench for wrench in wrenches if wrench.end is None or now < wrench.end]

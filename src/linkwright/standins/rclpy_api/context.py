@@ -195,7 +195,7 @@ class Context:
         with self._lock:
             graph, self._graph = self._graph, None
         if graph is not None:
-            graph.close_now()
+            graph.close_threadsafe()
         if self._logging is not None:
             logging.shutdown()
             self._logging.close()

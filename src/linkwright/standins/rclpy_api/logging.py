@@ -7,7 +7,7 @@ import time
 from pathlib import Path
 
 from linkwright.graph.log.console import print_to_console
-from linkwright.graph.log.logger import Logger, LogLevel, LogLevels, LogRecord, LogSink, level_named
+from linkwright.graph.log.logger import Logger, LogLevel, LogLevels, LogRecord, LogSink, level_from_name
 
 LEVELS = LogLevels()
 """The levels of all loggers of the process."""
@@ -84,7 +84,7 @@ def get_logging_severity_from_string(log_severity: str) -> LogLevel:
     Raises:
         RuntimeError: there is no such severity.
     """
-    level = level_named(log_severity)
+    level = level_from_name(log_severity)
     if level is None:
         raise RuntimeError(f"failed to get severity from string '{log_severity}'")
     return level

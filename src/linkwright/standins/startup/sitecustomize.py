@@ -189,9 +189,9 @@ def _report_with_hint(kind: type[BaseException], error: BaseException, traceback
     if isinstance(error, ImportError) and name and not _stand_ins.has_real_ros():
         try:
             _make_importable()
-            from linkwright.packages.programs.missing_modules import known_provider_hint, where_it_is
+            from linkwright.packages.programs.missing_modules import known_provider_hint, other_module_hint
 
-            hint = known_provider_hint(name) if isinstance(error, ModuleNotFoundError) else where_it_is(error)
+            hint = known_provider_hint(name) if isinstance(error, ModuleNotFoundError) else other_module_hint(error)
         except Exception:  # noqa: BLE001 - the program's own error is reported
             return
         if hint:

@@ -26,7 +26,7 @@ GRACE = 0.4
 FAREWELL_WITHIN = 1.0
 """Seconds after an endpoint is gone within which it is heard that it was withdrawn, should that come late."""
 
-LOOK_AGAIN = 0.2
+POLL_SECONDS = 0.2
 """Seconds after which processes are looked at again."""
 
 
@@ -95,7 +95,7 @@ class Departures:
             return None
         self._review_gone()
         processes = self._review_processes()
-        return LOOK_AGAIN if self._gone or processes else None
+        return POLL_SECONDS if self._gone or processes else None
 
     def _review_gone(self) -> None:
         now, waiting = self._now(), []

@@ -76,9 +76,9 @@ class Discovery:
         """Whether something outside has changed since the flag was last read and reset."""
         self._nodes: Sequence[NodeEntities] = ()
         self._evidence: dict[bytes, int] = {}
-        self._participants = self._builtin(BUILTIN_PARTICIPANTS)
-        self._publications = self._builtin(BUILTIN_PUBLICATIONS)
-        self._subscriptions = self._builtin(BUILTIN_SUBSCRIPTIONS)
+        self._participants = self._create_builtin_reader(BUILTIN_PARTICIPANTS)
+        self._publications = self._create_builtin_reader(BUILTIN_PUBLICATIONS)
+        self._subscriptions = self._create_builtin_reader(BUILTIN_SUBSCRIPTIONS)
         self._reader = self._new_reader()
         self._thread = thread
         self._requests = DiscoveryRequests(self._listen_again)
@@ -101,7 +101,7 @@ class Discovery:
 
     # --- receiving --------------------------------------------------------------------------------------------------
 
-    def _builtin(self, topic: int) -> int:
+    def _create_builtin_reader(self, topic: int) -> int:
         return self._participant.create_reader(topic, None)
 
     def _new_reader(self) -> tuple[int, int]:
@@ -110,19 +110,19 @@ class Discovery:
             return topic, self._participant.create_reader(topic, qos)
 
     def _take_participants(self) -> bool:
-        taken = self._dds.take_participants(self._participants, _AT_ONCE, self._participant_sample, _pointer)
+        taken = self._dds.take_participants(self._participants, _AT_ONCE, self._on_participant_sample, _pointer)
         return isinstance(taken, list) and len(taken) == _AT_ONCE
 
     def _take_endpoints(self, reader: int, *, is_writer: bool) -> bool:
         def sample(
             guid: bytes, owner: bytes, _: int, topic: str, type_name: str, qos: int, info: Any, *__: Any
         ) -> None:
-            self._endpoint_sample(guid, owner, topic, type_name, qos, info, is_writer)
+            self._on_endpoint_sample(guid, owner, topic, type_name, qos, info, is_writer)
 
         taken = self._dds.take_endpoints(reader, _AT_ONCE, sample, _pointer)
         return isinstance(taken, list) and len(taken) == _AT_ONCE
 
-    def _participant_sample(self, guid: bytes, qos: int, info: Any) -> None:
+    def _on_participant_sample(self, guid: bytes, qos: int, info: Any) -> None:
         if guid == self._participant.guid:
             return
         self.changed = True
@@ -153,7 +153,7 @@ class Discovery:
                 return int(number)
         return None
 
-    def _endpoint_sample(
+    def _on_endpoint_sample(
         self, guid: bytes, owner: bytes, topic: str, type_name: str, qos: int, info: Any, is_writer: bool
     ) -> None:
         if owner == self._participant.guid:
@@ -180,13 +180,13 @@ class Discovery:
                 self.changed = True
         return len(samples) == _AT_ONCE
 
-    def ask_silent(self) -> float | None:
+    def request_missing_nodes(self) -> float | None:
         """Request announcements from participants that have not announced their nodes.
 
         Returns:
             The seconds until the next call, or None if no call is needed.
         """
-        return self._requests.review(is_complete=self._remote.all_announced())
+        return self._requests.review(is_complete=self._remote.have_all_announced())
 
     def _listen_again(self) -> Callable[[], None]:
         topic, reader = self._new_reader()

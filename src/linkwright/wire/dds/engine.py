@@ -176,7 +176,7 @@ class Engine(AnyEngine):
         """Mirror a service."""
         incoming = IncomingService(service, self._domain, self._control.wake)
         self._services[service] = incoming
-        self._meet_fast(incoming)
+        self._connect_fast(incoming)
         self._reception.attach(incoming.pair.reader, incoming.on_data)
         self._is_announced = False
 
@@ -184,7 +184,7 @@ class Engine(AnyEngine):
         """Mirror a client."""
         outside = OutsideServer(client, self._domain, self._on_match)
         self._clients[client] = outside
-        self._meet_fast(outside)
+        self._connect_fast(outside)
         self._reception.attach(outside.pair.reader, outside.on_data)
         self._control.attach(outside.pair.writer, outside.on_writer_status)
         self._is_announced = False
@@ -220,39 +220,39 @@ class Engine(AnyEngine):
             The seconds until the next call, or None if no call is needed.
         """
         self._do_some_work()
-        self._look_outside()
+        self._handle_discovery()
         self._end_leaving()
         self._write_waiting()
         late = self._review_replies()
         self._log_mismatches()
         self._announce()
-        asking, departing = self._discovery.ask_silent(), self._departures.review()
+        asking, departing = self._discovery.request_missing_nodes(), self._departures.review()
         if self._work:
             return 0.0
         if self._leaving or self._waiting or self._mismatched or late:
             return _LOOK_AGAIN
         return min((seconds for seconds in (asking, departing) if seconds is not None), default=None)
 
-    def _look_outside(self) -> None:
+    def _handle_discovery(self) -> None:
         matches_changed, self._matches_changed = self._matches_changed, False
         changed, self._discovery.changed = self._discovery.changed, False
         if changed:
             self._discovery.review_gid_size()
-            self._look_for_fast()
+            self._discover_fast()
         if changed or matches_changed:
             for client in tuple(self._clients.values()):
                 client.review()
         if changed:
             self._remote.announce()
 
-    def _meet_fast(self, mirrored: IncomingService | OutsideServer) -> None:
+    def _connect_fast(self, mirrored: IncomingService | OutsideServer) -> None:
         """Make a new service or client known to the participants on Fast DDS, if they are served."""
         if self._fast is None:
-            self._look_for_fast()
+            self._discover_fast()
         else:
             mirrored.meet_fast(self._fast)
 
-    def _look_for_fast(self) -> None:
+    def _discover_fast(self) -> None:
         """Create the participant for Fast DDS if needed, and look for newly discovered participants.
 
         It is needed once a participant on Fast DDS exists and this process has a service or a client.

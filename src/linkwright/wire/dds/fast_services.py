@@ -165,12 +165,12 @@ class FastServer:
                 if early_request.writer not in ready and now < early_request.came + _EARLY_WAITS
             ]
         for writer in ready:
-            for number, request in self._numbered_of(
+            for number, request in self._assign_numbers(
                 writer, [early_request for early_request in early if early_request.writer == writer]
             ):
                 self._ask(request.body, writer, writer, number)
 
-    def _numbered_of(self, writer: bytes, early: list[EarlyRequest]) -> list[tuple[int, EarlyRequest]]:
+    def _assign_numbers(self, writer: bytes, early: list[EarlyRequest]) -> list[tuple[int, EarlyRequest]]:
         """Return a writer's early requests that do not arrive here, too, each with its number."""
         last = self._participant.last_of(self._requests, writer)
         with self._lock:

@@ -14,7 +14,7 @@ from linkwright.diagnostics import Phrase, install_hint, phrase
 from linkwright.wire.background import JoinOptions, join_with
 from linkwright.wire.dds.settings import read_settings
 from linkwright.wire.dds.transport import DdsTransport
-from linkwright.wire.switch import is_switched_off, switched_off
+from linkwright.wire.switch import is_switched_off, switched_off_reason
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -29,7 +29,7 @@ def unavailable_reason(environment: Mapping[str, str] | None = None) -> Phrase:
         environment: the environment variables; those of this process if omitted.
     """
     if is_switched_off(environment):
-        return switched_off()
+        return switched_off_reason()
     if find_spec("cyclonedds") is None:
         return phrase(
             "the package 'cyclonedds' is not installed: {hint} (it has wheels for Linux x86_64, Windows "

@@ -9,7 +9,7 @@ from threading import Lock
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.wire.dds.confinement import confine
 from linkwright.wire.dds.cyclone import LOG_ERRORS, load
-from linkwright.wire.dds.settings import Settings, most_participants, own_addresses
+from linkwright.wire.dds.settings import Settings, max_participants, own_addresses
 from linkwright.wire.dds.topic_types import TopicTypes
 from linkwright.wire.dds.type_descriptions import WireTypes
 
@@ -116,7 +116,7 @@ def _create_domain(settings: Settings) -> OpenDomain:
                 "check that at most {most} processes are in the domain, that its ports (from 7400, 250 per "
                 "domain) are free, and that a network interface is up; otherwise use another ROS_DOMAIN_ID, "
                 "or name an interface in CYCLONEDDS_URI",
-                most=most_participants(settings.domain_id),
+                most=max_participants(settings.domain_id),
             ),
         )
     )

@@ -19,7 +19,7 @@ from contextlib import suppress
 from queue import SimpleQueue
 
 from linkwright.wire.dds.local_sockets import waiting_bytes
-from linkwright.wire.dds.rtps.messages import FRAGMENT, fragment_start, fragments_of, info_timestamp, message
+from linkwright.wire.dds.rtps.messages import FRAGMENT, fragment_count, fragment_start, info_timestamp, message
 from linkwright.wire.dds.rtps.values import PREFIX, UNKNOWN, Address
 from linkwright.wire.living_threads import guarded
 
@@ -150,7 +150,7 @@ class Pacer:
         readers = {prefix: self._receiver(address) for prefix, address in places.items()}
         for receiver in readers.values():
             receiver.begin()
-        for which in range(1, fragments_of(sample) + 1):
+        for which in range(1, fragment_count(sample) + 1):
             part = data[(which - 1) * FRAGMENT : which * FRAGMENT]
             start = fragment_start(UNKNOWN, writer[PREFIX:], number, len(sample), which, len(part))
             for prefix, receiver in tuple(readers.items()):

@@ -59,7 +59,7 @@ class Participant:
             self.entity = check_call(code, "joining the domain")
         except CycloneError as error:
             close_domain(self._domain)
-            raise _no_participant(settings, error) from error
+            raise _participant_error(settings, error) from error
         self.guid: bytes = self._dds.guid(self.entity)
 
     @property
@@ -102,7 +102,7 @@ class Participant:
         close_domain(self._domain)
 
 
-def _no_participant(settings: Settings, error: CycloneError) -> LinkwrightError:
+def _participant_error(settings: Settings, error: CycloneError) -> LinkwrightError:
     return LinkwrightError(
         Diagnostic(
             code="DDS104",

@@ -275,7 +275,7 @@ class RemoteGraph(Outside):
         """Return whether a participant, given by its GUID prefix, is known to have been killed."""
         return any(guid.startswith(prefix) for guid in self._dead_participants())
 
-    def all_announced(self) -> bool:
+    def have_all_announced(self) -> bool:
         """Return whether every participant that can announce its nodes has announced them.
 
         Such a participant has a writer of ``ros_discovery_info``.
@@ -314,7 +314,7 @@ class RemoteGraph(Outside):
                     return False
                 if age < _ALL_WITHIN and not self._endpoints.keys() >= participant.endpoints():
                     return False
-        return self.all_announced()
+        return self.have_all_announced()
 
     def our_processes(self) -> set[int]:
         """Return the known process ids of running Linkwright processes on this machine."""

@@ -164,7 +164,7 @@ class OutsideServer:
 
     def review(self) -> None:
         """Update whether there is a server whose reader and writer both match ours."""
-        self._by_cyclone = self._server_is_there()
+        self._by_cyclone = self._is_server_available()
         is_ready = self._by_cyclone or (self._fast is not None and self._fast.is_ready())
         if is_ready != self._is_ready:
             self._is_ready = is_ready
@@ -185,7 +185,7 @@ class OutsideServer:
     def _forget(self, number: int) -> None:
         self._answers.pop(number, None)
 
-    def _server_is_there(self) -> bool:
+    def _is_server_available(self) -> bool:
         listening = [self._remote.endpoint(handle) for handle in self._dds.matched(self.pair.writer, writer=True)]
         ours = [endpoint for endpoint in listening if endpoint is not None and not endpoint.is_fast]
         replying = [self._remote.endpoint(handle) for handle in self._dds.matched(self.pair.reader, writer=False)]
@@ -218,7 +218,7 @@ class IncomingService:
         for data, info in self.pair.samples():
             count += 1
             sender = self._remote.endpoint(info.publication_handle)
-            if self._from_fast(sender, data, info):
+            if self._accept_from_fast(sender, data, info):
                 continue
             client_id, number, body = _split_sample(data)
             if body:
@@ -257,7 +257,7 @@ class IncomingService:
             self._fast.close()
         self.pair.close()
 
-    def _from_fast(self, sender: RemoteEndpoint | None, data: bytes, info: Any) -> bool:
+    def _accept_from_fast(self, sender: RemoteEndpoint | None, data: bytes, info: Any) -> bool:
         """Return whether a request came from Fast DDS; if so, pass it to `FastServer`."""
         guid = sender.guid if sender else self._dds.writer_guid(self.pair.reader, info.publication_handle)
         if not is_fast(guid):

@@ -38,7 +38,7 @@ LEASE = 5
 _STATIC_PEERS_SEPARATOR = ";"
 
 
-def most_participants(domain_id: int) -> int:
+def max_participants(domain_id: int) -> int:
     """Return the maximum number of participants of a domain on one machine.
 
     Each participant uses two ports, and only a few ports are left for the highest domains. The ports are those of RTPS
@@ -108,7 +108,7 @@ def read_settings(environment: Mapping[str, str] | None = None, *, domain_id: in
         warnings.append(f"{len(peers)} static peers were specified, but discovery is {reach.value}: they are ignored")
     user = variables.get("CYCLONEDDS_URI", "")
     domain_id = read_domain_id(variables, domain_id)
-    own = tuple(_fragments(reach, peers, most_participants(domain_id)))
+    own = tuple(_configurations(reach, peers, max_participants(domain_id)))
     configurations = tuple(",".join(part for part in (configuration, user) if part) for configuration in own)
     return Settings(
         domain_id=domain_id,
@@ -208,7 +208,7 @@ def _stays_here(reach: Range, peers: list[str]) -> bool:
     return reach is Range.MACHINE or (reach is Range.LOCALHOST and not peers)
 
 
-def _fragments(reach: Range, peers: list[str], most: int) -> list[str]:
+def _configurations(reach: Range, peers: list[str], most: int) -> list[str]:
     """Return the configurations in order of preference, without the user's own configuration."""
     if _stays_here(reach, peers):
         addresses = own_addresses()[:_OWN_ADDRESSES]
@@ -248,11 +248,11 @@ def own_addresses() -> list[str]:
     Cyclone prints an error if it is given an interface that does not exist. A process that is configured to stay on the
     machine may be reachable only at the address of its interface.
     """
-    addresses = _by_interface() if sys.platform.startswith("linux") else _by_name()
+    addresses = _interface_addresses() if sys.platform.startswith("linux") else _by_name()
     return [address for address in dict.fromkeys(addresses) if address and not address.startswith("127.")]
 
 
-def _by_interface() -> list[str]:
+def _interface_addresses() -> list[str]:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as asking:
         return [_address(asking, name) for _, name in socket.if_nameindex()]
 

@@ -184,9 +184,9 @@ class OutgoingTopic(MirroredTopic):
         """
         until = time.monotonic_ns() + nanoseconds
         while self.review():
-            if not self._are_acknowledged(max(0, until - time.monotonic_ns())):
+            if not self._wait_for_acks(max(0, until - time.monotonic_ns())):
                 return False
-        return self._are_acknowledged(max(0, until - time.monotonic_ns()))
+        return self._wait_for_acks(max(0, until - time.monotonic_ns()))
 
     def close(self) -> None:
         """Delete the writer."""
@@ -209,7 +209,7 @@ class OutgoingTopic(MirroredTopic):
     def _acknowledged(self, seconds: float | None) -> bool:
         return self.acknowledged(0x7FFF_FFFF_FFFF_FFFF if seconds is None else int(seconds * 1e9))
 
-    def _are_acknowledged(self, nanoseconds: int) -> bool:
+    def _wait_for_acks(self, nanoseconds: int) -> bool:
         """Wait until all readers have acknowledged the written samples; return False on timeout.
 
         Samples in the backlog are not considered.
@@ -248,7 +248,7 @@ class OutgoingTopic(MirroredTopic):
             depth,
             fragment_size,
             self._write,
-            acknowledged=lambda: self._are_acknowledged(0),
+            acknowledged=lambda: self._wait_for_acks(0),
             matters=lambda: self._remote.is_read_by_fast(self.topic_name),
         )
 
@@ -387,7 +387,7 @@ class IncomingTopic(MirroredTopic):
             lost = CountStatus()
             self._dds.dds_get_sample_lost_status(self.entity, c.byref(lost))
             if lost.total_count_change > 0:
-                self._subscription.lost_outside(lost.total_count_change)
+                self._subscription.count_lost_outside(lost.total_count_change)
         if changed & LIVELINESS_CHANGED:
             lives = LivelinessChangedStatus()
             self._dds.dds_get_liveliness_changed_status(self.entity, c.byref(lives))

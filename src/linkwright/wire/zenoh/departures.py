@@ -30,7 +30,7 @@ GRACE = 0.4
 
 
 @dataclass(slots=True)
-class _Gone:
+class _MissingPublisher:
     """A publisher whose token has disappeared.
 
     Attributes:
@@ -58,7 +58,7 @@ class Departures:
         self._remote = remote
         self._now = now
         self._watchers: list[Callable[[EndpointInfo], None]] = []
-        self._gone: list[_Gone] = []
+        self._gone: list[_MissingPublisher] = []
         self._here: set[str] = set()
         self._left: set[str] = set()
         self._ended: dict[str, float] = {}
@@ -100,7 +100,7 @@ class Departures:
         if token.node_key in self._nodes_gone:
             self._unordered.add(token.node_key)
         if self._watchers and token.kind is EndpointKind.PUBLISHER:
-            self._gone.append(_Gone(key, token, self._now() + GRACE))
+            self._gone.append(_MissingPublisher(key, token, self._now() + GRACE))
 
     def review(self) -> float | None:
         """Report the publishers that have become lost since the last call.
@@ -120,7 +120,7 @@ class Departures:
             self._forget(now)
         return max(self._gone[0].due - now, 0.0) if self._gone else None
 
-    def _is_lost(self, gone: _Gone) -> bool:
+    def _is_lost(self, gone: _MissingPublisher) -> bool:
         token = gone.token
         if self._remote.has_token(gone.key):
             return False

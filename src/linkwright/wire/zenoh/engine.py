@@ -260,10 +260,10 @@ class Engine(AnyEngine):
             seconds: the maximum time that processes have to announce themselves.
             answered: called from any thread when all have answered or the time is over.
         """
-        self._interests.ask_all(seconds, answered)
+        self._interests.request_all(seconds, answered)
         self._interests.add_all()
 
-    def note_news(self) -> None:
+    def process_tokens(self) -> None:
         """Process the tokens that have been received since the last call."""
         while self._news:
             appeared, key = self._news.popleft()
@@ -296,12 +296,12 @@ class Engine(AnyEngine):
         while not self._ended.is_set():
             self._wake.clear()
             self._do_some_work()
-            guarded(self._handle_news, self._report)
+            guarded(self._update_mirrors, self._report)
             again = 0.0 if self._work else guarded(self._departures.review, self._report)
             self._wake.wait(again)
 
-    def _handle_news(self) -> None:
-        self.note_news()
+    def _update_mirrors(self) -> None:
+        self.process_tokens()
         changed, self._has_changed = self._has_changed, False
         if changed or self._is_stale:
             self._is_stale = False
@@ -313,7 +313,7 @@ class Engine(AnyEngine):
     def _note(self, *, appeared: bool, key: str) -> bool:
         """Record that a token appeared or disappeared; return whether that changes the remote graph."""
         if key.startswith(OURS):
-            self._note_session(appeared=appeared, key=key)
+            self._record_session(appeared=appeared, key=key)
             return False
         token = tokens.read(key)
         if token is None or token.session == self._session_id:
@@ -325,14 +325,14 @@ class Engine(AnyEngine):
         self._departures.token_removed(key, token)
         return True
 
-    def _note_session(self, *, appeared: bool, key: str) -> None:
+    def _record_session(self, *, appeared: bool, key: str) -> None:
         """Record that a token of a Linkwright session appeared or disappeared."""
         _, _, session, what = key.split("/")
         if what == "here" and appeared:
             self._departures.session_started(session)
         elif what == "here":
             self._departures.session_ended(session)
-            self._follows = False  # makes `note_news` end the subscription to that session
+            self._follows = False  # makes `process_tokens` end the subscription to that session
         elif appeared:
             self._departures.session_leaves(session)
 

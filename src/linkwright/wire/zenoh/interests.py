@@ -92,7 +92,7 @@ class Interests:
         for declared in before.values():
             declared.undeclare()
 
-    def ask_all(self, seconds: float, answered: Callable[[], None]) -> None:
+    def request_all(self, seconds: float, answered: Callable[[], None]) -> None:
         """Request the live tokens of the domain.
 
         This must be called before `add_all`, after which Zenoh answers from its own memory.

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Phrase, install_hint, phrase
 from linkwright.wire.background import JoinOptions, join_with
-from linkwright.wire.switch import is_switched_off, switched_off
+from linkwright.wire.switch import is_switched_off, switched_off_reason
 from linkwright.wire.zenoh.settings import read_settings
 from linkwright.wire.zenoh.transport import ZenohTransport
 
@@ -34,7 +34,7 @@ def unavailable_reason(environment: Mapping[str, str] | None = None) -> Phrase:
         environment: the environment variables; those of this process if omitted.
     """
     if is_switched_off(environment):
-        return switched_off()
+        return switched_off_reason()
     if not is_installed():
         return phrase(
             "the package 'eclipse-zenoh' is not installed: {hint} (this is {system} {machine} with Python {version})",

@@ -169,7 +169,7 @@ class IncomingTopic:
         last = self._last.get(gid)
         self._last[gid] = number
         if last is not None and number > last + 1:
-            self._subscription.lost_outside(number - last - 1)
+            self._subscription.count_lost_outside(number - last - 1)
         info = MessageInfo(sent_ns, time.time_ns(), gid, True, number)
         try:
             self._subscription.receive(sample.payload.to_bytes(), info)

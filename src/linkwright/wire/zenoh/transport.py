@@ -90,7 +90,7 @@ class ZenohTransport(BackgroundTransport):
             time.sleep(_QUIET / 10)
 
     def _note_news(self, engine: Engine) -> None:
-        cast("ZenohEngine", engine).note_news()
+        cast("ZenohEngine", engine).process_tokens()
         self._looked.set()
 
     def _make_engine(self) -> Engine:

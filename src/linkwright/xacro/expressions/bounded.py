@@ -22,7 +22,7 @@ class RefusalError(Exception):
     """Raised when an expression attempts something that expressions are not allowed to do."""
 
 
-_MOST_ALIKE = 1_000
+_MAX_EQUAL_HASHES = 1_000
 """Python compares each of the keys that have one hash with each."""
 _MOST_COMPARED = 200_000_000
 """Characters, in one call."""
@@ -53,7 +53,7 @@ def checked_keys(value: Any) -> Any:
     if isinstance(value, (str, bytes, dict, set, frozenset, range)) or not hasattr(value, "__iter__"):
         return value
     items = value if isinstance(value, (list, tuple)) else list(value)
-    if len(items) > _MOST_ALIKE:
+    if len(items) > _MAX_EQUAL_HASHES:
         check_keys(items)
         check_keys([item[0] for item in items if isinstance(item, (list, tuple)) and item])
     return items
@@ -66,10 +66,14 @@ def check_keys(items: Collection[Any]) -> None:
         RefusalError: if more than a thousand different keys have the same hash.
     """
     for alike, count in Counter(map(_hash_of, items)).items():
-        if count > _MOST_ALIKE and len({repr(item) for item in items if _hash_of(item) == alike}) > _MOST_ALIKE:
+        if (
+            count > _MAX_EQUAL_HASHES
+            and len({repr(item) for item in items if _hash_of(item) == alike}) > _MAX_EQUAL_HASHES
+        ):
             raise RefusalError(
                 phrase(
-                    "more than {count:,} of the keys have the same hash, which real keys never do", count=_MOST_ALIKE
+                    "more than {count:,} of the keys have the same hash, which real keys never do",
+                    count=_MAX_EQUAL_HASHES,
                 )
             )
 
@@ -94,7 +98,7 @@ def _rsplit(text: str, sep: str | None = None, maxsplit: int = -1) -> list[str]:
     return text.rsplit() if sep is None and maxsplit == -1 else _backwards("rsplit")(text, sep, maxsplit)
 
 
-def _stripped(name: str) -> Callable[..., Any]:
+def _bounded_strip(name: str) -> Callable[..., Any]:
     def strip(text: str, characters: str | None = None) -> Any:
         if isinstance(characters, str):
             characters = "".join(dict.fromkeys(characters))
@@ -122,7 +126,7 @@ def check_codec(value: Any, encoding: str) -> None:
         raise RefusalError(phrase("the string is too long for the encoding '{encoding}'", encoding=encoding))
 
 
-def _coded(name: str) -> Callable[..., Any]:
+def _bounded_codec(name: str) -> Callable[..., Any]:
     def code(value: Any, encoding: str = "utf-8", errors: str = "strict") -> Any:
         check_codec(value, encoding)
         return getattr(value, name)(encoding, errors)
@@ -133,14 +137,14 @@ def _coded(name: str) -> Callable[..., Any]:
 METHODS: dict[tuple[type, str], Callable[..., Any]] = {
     **{(str, name): _backwards(name) for name in ("rfind", "rindex", "rpartition")},
     (str, "rsplit"): _rsplit,
-    **{(str, name): _stripped(name) for name in ("strip", "lstrip", "rstrip")},
-    (str, "encode"): _coded("encode"),
-    (bytes, "decode"): _coded("decode"),
+    **{(str, name): _bounded_strip(name) for name in ("strip", "lstrip", "rstrip")},
+    (str, "encode"): _bounded_codec("encode"),
+    (bytes, "decode"): _bounded_codec("decode"),
 }
 """Methods that are bounded: type and name -> the function to call instead."""
 
 
-def _of_few(name: str) -> Callable[..., Any]:
+def _bounded_function(name: str) -> Callable[..., Any]:
     function = getattr(math, name)
 
     def guarded(*numbers: Any) -> Any:
@@ -159,7 +163,7 @@ def _sumprod(left: Iterable[Any], right: Iterable[Any]) -> Any:
 
 
 MATHEMATICS: dict[str, Any] = {
-    "gcd": _of_few("gcd"),
+    "gcd": _bounded_function("gcd"),
     **({"sumprod": _sumprod} if hasattr(math, "sumprod") else {}),
 }
 """Functions of ``math`` that are bounded."""

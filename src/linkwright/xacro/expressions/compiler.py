@@ -16,7 +16,7 @@ from linkwright.diagnostics import Phrase, foreign, phrase
 from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expressions import sandbox
 from linkwright.xacro.expressions.bounded import RefusalError, checked_keys
-from linkwright.xacro.expressions.functions import Function, bind_parameters, call, charged, cost
+from linkwright.xacro.expressions.functions import Function, bind_parameters, call, charge_value, cost
 from linkwright.xacro.expressions.scope import Environment
 from linkwright.xacro.expressions.yamldata import COPIED, YamlDict, YamlMapping, wrapped
 from linkwright.xacro.faults import Fault
@@ -223,8 +223,8 @@ class Compiler:
 
         def formatted(env: Environment) -> Any:
             try:
-                result = sandbox.formatted(charged(env.session.budget, value(env)), conversion, specification(env))
-                return charged(env.session.budget, result)
+                result = sandbox.formatted(charge_value(env.session.budget, value(env)), conversion, specification(env))
+                return charge_value(env.session.budget, result)
             except FAILURES as error:
                 raise self._failure(error, start, end) from None
 
@@ -433,7 +433,7 @@ class Compiler:
 
         def display(env: Environment) -> Any:
             try:
-                return charged(env.session.budget, kind(_arguments(env, items, [])[0]))
+                return charge_value(env.session.budget, kind(_arguments(env, items, [])[0]))
             except (RefusalError, TypeError) as error:
                 raise self._failure(error, start, end) from None
 
@@ -451,7 +451,7 @@ class Compiler:
             try:
                 for key, value in items:
                     result.update(checked_keys(value(env)) if key is None else {key(env): value(env)})
-                return charged(env.session.budget, result)
+                return charge_value(env.session.budget, result)
             except (RefusalError, TypeError, ValueError) as error:
                 raise self._failure(error, start, end) from None
 
@@ -473,7 +473,7 @@ class Compiler:
 
         def comprehension(env: Environment) -> Any:
             try:
-                return charged(env.session.budget, kind(item(inner) for inner in turns(env)))
+                return charge_value(env.session.budget, kind(item(inner) for inner in turns(env)))
             except (RefusalError, TypeError, ValueError) as error:
                 raise self._failure(error, start, end) from None
 
@@ -485,7 +485,7 @@ class Compiler:
 
         def comprehension(env: Environment) -> Any:
             try:
-                return charged(env.session.budget, {key(inner): value(inner) for inner in turns(env)})
+                return charge_value(env.session.budget, {key(inner): value(inner) for inner in turns(env)})
             except (RefusalError, TypeError, ValueError) as error:
                 raise self._failure(error, start, end) from None
 

@@ -51,7 +51,7 @@ class Expression:
         if stripped.isidentifier() and stripped.isascii() and stripped not in _KEYWORDS:
             self.evaluate: Closure = compiler.name(stripped, 0)
         else:
-            self.evaluate = _run_through(compiler.compile(_parse(source, stripped).body), source)
+            self.evaluate = _exhaust_iterator(compiler.compile(_parse(source, stripped).body), source)
         self.changes = compiler.changes
 
 
@@ -78,7 +78,7 @@ def compile_expression(source: str) -> Expression:
     return expressions.get(source) or _compiler.make(source)
 
 
-def _run_through(closure: Closure, source: str) -> Closure:
+def _exhaust_iterator(closure: Closure, source: str) -> Closure:
     """Return a closure that evaluates all items of an iterator immediately instead of on demand."""
 
     def evaluate(scope: Scope) -> Any:

@@ -178,13 +178,13 @@ def call(budget: Budget, function: Any, arguments: list[Any], keywords: dict[str
             steps += cost(owner)
     budget.charge_steps(steps)
     if (function is map or function is filter) and arguments:
-        arguments = [_metered(budget, arguments[0]), *arguments[1:]]
+        arguments = [_meter_calls(budget, arguments[0]), *arguments[1:]]
     if "key" in keywords:
-        keywords = {**keywords, "key": _metered(budget, keywords["key"])}
-    return charged(budget, function(*arguments, **keywords))
+        keywords = {**keywords, "key": _meter_calls(budget, keywords["key"])}
+    return charge_value(budget, function(*arguments, **keywords))
 
 
-def charged(budget: Budget, value: Any) -> Any:
+def charge_value(budget: Budget, value: Any) -> Any:
     """Charge the budget for a new value with all its items, and return the value.
 
     Raises:
@@ -197,7 +197,7 @@ def charged(budget: Budget, value: Any) -> Any:
     return value
 
 
-def _metered(budget: Budget, function: Any) -> Any:
+def _meter_calls(budget: Budget, function: Any) -> Any:
     """Return a function that charges the budget each time one of Python's functions calls it.
 
     Lambdas are returned unchanged, because they charge the budget themselves.

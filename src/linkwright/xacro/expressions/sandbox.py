@@ -356,7 +356,7 @@ class _Bound:
         return self._method(self.__self__, *arguments, **keywords)
 
 
-def _padded(name: str) -> Callable[..., Any]:
+def _bounded_pad(name: str) -> Callable[..., Any]:
     def pad(text: str, width: int, *fill: str) -> Any:
         _check_length(width)
         return getattr(text, name)(width, *fill)
@@ -389,7 +389,7 @@ def _extend(items: list[Any], more: Any) -> None:
 
 
 _GROWING: dict[tuple[type, str], Callable[..., Any]] = {
-    **{(str, name): _padded(name) for name in ("center", "ljust", "rjust", "zfill")},
+    **{(str, name): _bounded_pad(name) for name in ("center", "ljust", "rjust", "zfill")},
     (str, "expandtabs"): _expandtabs,
     (str, "join"): _join,
     (str, "replace"): _replace,

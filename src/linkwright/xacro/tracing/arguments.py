@@ -153,7 +153,7 @@ class _Findings:
             for element in document.root.walk():
                 if element.tag == "xacro:arg" and "name" in element.attributes:
                     self.elsewhere.setdefault(element.attributes["name"], element)
-                for name, span in _uses(element):
+                for name, span in _used_arguments(element):
                     self.uses.setdefault(name, span)
 
     def arguments(self) -> tuple[Argument, ...]:
@@ -233,7 +233,7 @@ def _follow_includes(session: _Session) -> None:
                 continue  # the name of the included file depends on properties of the files
 
 
-def _uses(element: Element) -> Iterator[tuple[str, Span | None]]:
+def _used_arguments(element: Element) -> Iterator[tuple[str, Span | None]]:
     """Yield the arguments that an element's attributes and own texts use, with locations."""
     for attribute, value in element.attributes.items():
         for match in _found(value):

@@ -11,7 +11,7 @@ from linkwright.descriptions import DescriptionLibrary
 from linkwright.messages import get_message
 from linkwright.page.files import MeshIndex
 from linkwright.rviz.displays.moveit.robot import PosableRobot, UnusableStateError
-from linkwright.rviz.displays.moveit.trajectory import read_motion, shown_for
+from linkwright.rviz.displays.moveit.trajectory import display_seconds, read_motion
 from tests.rviz.displays.moveit.arm import ARM, ObjectColor, attached, config, scene, state, thing, trajectory
 from tests.viewer.contents import shown_markers
 from tests.viewer.scene import world
@@ -52,7 +52,7 @@ def robot() -> PosableRobot:
     [("3x", 0.2), ("0.05 s", 0.05), ("0.05s", 0.05), ("0.1", 0.1), ("REALTIME", 0.6), ("0x", 0.2), ("soon", 0.2)],
 )
 def test_how_long_a_state_is_shown(text, seconds):
-    assert shown_for(text, 0.6) == pytest.approx(seconds)
+    assert display_seconds(text, 0.6) == pytest.approx(seconds)
 
 
 def test_a_motion_begins_with_its_start_and_keeps_what_does_not_move():

@@ -110,7 +110,7 @@ class TwistMux(SingleNode):
         now = self._now_ns()
         source.hear(now)
         lock = self._lock_priority(now)
-        open_ones = [topic for topic in self._topics if topic.priority and not self._masked(topic, lock, now)]
+        open_ones = [topic for topic in self._topics if topic.priority and not self._is_masked(topic, lock, now)]
         if open_ones and max(open_ones, key=lambda open_one: open_one.priority) is source:
             self._commander.note_publisher(info)
             self._publisher.publish(message)
@@ -122,14 +122,16 @@ class TwistMux(SingleNode):
     def _lock_priority(self, now_ns: int) -> int:
         return max((lock.priority for lock in self._locks if lock.locked or lock.expired(now_ns)), default=0)
 
-    def _masked(self, source: _Source, lock: int, now_ns: int) -> bool:
+    def _is_masked(self, source: _Source, lock: int, now_ns: int) -> bool:
         return source.silent or source.expired(now_ns) or source.priority < lock
 
     def _health(self) -> Health:
         now = self._now_ns()
         lock = self._lock_priority(now)
         values = {
-            f"velocity {topic.name}": topic.diagnostic_line("masked" if self._masked(topic, lock, now) else "unmasked")
+            f"velocity {topic.name}": topic.diagnostic_line(
+                "masked" if self._is_masked(topic, lock, now) else "unmasked"
+            )
             for topic in self._topics
         }
         values |= {

@@ -58,9 +58,9 @@ class Executable:
         parts = [cmd] if isinstance(cmd, (str, Substitution, Path)) else list(cmd)
         self.cmd = [normalize_to_list_of_substitutions(part) for part in (*parts, *(arguments or ()))]
         self.arguments = arguments
-        self.prefix = _optional(prefix)
-        self.name = _optional(name)
-        self.cwd = _optional(cwd)
+        self.prefix = _normalize_optional(prefix)
+        self.name = _normalize_optional(name)
+        self.cwd = _normalize_optional(cwd)
         self.env: Pairs | None = None if env is None else normalize_pairs(env)
         self.additional_env: Pairs | None = None if additional_env is None else normalize_pairs(additional_env)
         self.final_name: str | None = None
@@ -98,5 +98,5 @@ class Executable:
         return environment
 
 
-def _optional(value: Any) -> list[Substitution] | None:
+def _normalize_optional(value: Any) -> list[Substitution] | None:
     return None if value is None else normalize_to_list_of_substitutions(value)

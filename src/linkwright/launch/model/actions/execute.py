@@ -147,7 +147,7 @@ class ExecuteLocal(Action):
         Raises:
             RuntimeError: `cached_output` was not set.
         """
-        return self._cached_text(1)
+        return self._read_cached_output(1)
 
     def get_stderr(self) -> str:
         """Return the text that the process has written to stderr.
@@ -155,7 +155,7 @@ class ExecuteLocal(Action):
         Raises:
             RuntimeError: `cached_output` was not set.
         """
-        return self._cached_text(2)
+        return self._read_cached_output(2)
 
     def get_sub_entities(self) -> Sequence[LaunchDescriptionEntity]:
         """Return the entities to visit when the process has ended, if they are known."""
@@ -173,7 +173,10 @@ class ExecuteLocal(Action):
     # --- execution ------------------------------------------------------------------------------------------
 
     def prepare(self, context: LaunchContext) -> None:
-        """Evaluate the name, command, folder and environment, so that users can read them before the start."""
+        """Evaluate the name, command, folder and environment.
+
+        Users can then read them before the process starts.
+        """
         self._description.prepare(context, self)
 
     def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity] | None:
@@ -195,12 +198,12 @@ class ExecuteLocal(Action):
         return as_entities(self._after_exit(event, context))
 
     def wrote(self, stream: int, text: bytes) -> None:
-        """Store output that the process wrote to stdout (1) or stderr (2), if `cached_output` is set."""
+        """Store output of the process to stdout (1) or stderr (2), if `cached_output` is set."""
         if self._cached is not None:
             self._cached[stream].append(text)
 
     def _start(self, context: LaunchContext, command: list[str]) -> str:
-        """Start the process with an evaluated command, and return the name of the process in the log."""
+        """Start the process with an evaluated command, and return its name in the log."""
         if self._started:
             text = f"ExecuteLocal action '{self._description.final_name}': executed more than once: {self.describe()}"
             message = phrase(
@@ -294,7 +297,7 @@ class ExecuteLocal(Action):
             message = phrase("'{name}' is '{text}', which is not a number", name=name, text=text)
             raise error_at(self.place, "LAUNCH141", message, ros_error=error) from error
 
-    def _cached_text(self, stream: int) -> str:
+    def _read_cached_output(self, stream: int) -> str:
         if self._cached is None:
             raise RuntimeError("cached output must be true to be able to get stdout: give it cached_output=True")
         return b"".join(self._cached[stream]).decode(errors="replace")
@@ -365,11 +368,11 @@ class ExecuteProcess(ExecuteLocal):
         """
         if not context.is_shutdown:
             command = [perform_substitutions(context, part) for part in self._description.cmd]
-            if not self._is_replaced(context, command):
+            if not self._start_replacement(context, command):
                 self._start(context, command)
         return None
 
-    def _is_replaced(self, context: LaunchContext, command: list[str]) -> bool:
+    def _start_replacement(self, context: LaunchContext, command: list[str]) -> bool:
         """Start the Linkwright node that replaces the command, if there is one.
 
         Returns:

@@ -70,10 +70,10 @@ class GroupAction(Action):
         # Users' classes set '_GroupAction__actions' (its name in ROS) in 'execute', so build the list again after a
         # change.
         if self.__following is None or self.__following[0] is not self.__actions:
-            self.__following = self.__actions, self._with_scope()
+            self.__following = self.__actions, self._enclose_in_scope()
         return self.__following[1]
 
-    def _with_scope(self) -> list[LaunchDescriptionEntity]:
+    def _enclose_in_scope(self) -> list[LaunchDescriptionEntity]:
         setting: list[LaunchDescriptionEntity] = [
             SetLaunchConfiguration(name, value) for name, value in self._configurations.items()
         ]

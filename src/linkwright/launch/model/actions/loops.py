@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 @expose_action("for_each")
 class ForEach(Action):
-    """Calls a function for each of several sets of values, and visits the entities that it returns.
+    """Calls a function for each of several sets of values, and visits the returned entities.
 
     Args:
         input_values: the sets, each a YAML mapping in braces, separated by semicolons.

@@ -84,7 +84,10 @@ class AssigningAction(NamedAction):
 
 
 def parse_pairs(entity: Entity, parser: Parser, tag: str) -> dict[Any, Any] | None:
-    """Return the names and values in child tags such as ``<env name= value=/>``, or None if there are none."""
+    """Return the names and values in child tags such as ``<env name= value=/>``.
+
+    The result is None if there are no such tags.
+    """
     inside = entity.get_attr(tag, data_type=list[Entity], optional=True)
     if inside is None:
         return None

@@ -44,14 +44,14 @@ class ReadyToTest(Action):
             callback()
 
 
-def ready_actions(entities: Iterable[LaunchDescriptionEntity]) -> Iterator[ReadyToTest]:
+def find_ready_actions(entities: Iterable[LaunchDescriptionEntity]) -> Iterator[ReadyToTest]:
     """Yield the `ReadyToTest` actions among entities and their descendants."""
     for entity in entities:
         if isinstance(entity, ReadyToTest):
             yield entity
-        yield from ready_actions(entity.describe_sub_entities())
+        yield from find_ready_actions(entity.describe_sub_entities())
         for _, inside in entity.describe_conditional_sub_entities():
-            yield from ready_actions(inside)
+            yield from find_ready_actions(inside)
 
 
 class Test(ExecuteProcess):

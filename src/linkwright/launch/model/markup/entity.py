@@ -63,7 +63,10 @@ class Entity:
 
 
 def is_list_of_entities(data_type: Any) -> bool:
-    """Return whether a type is ``List[Entity]`` or ``list[Entity]``, with `Entity` or a subclass."""
+    """Return whether a type is ``List[Entity]`` or ``list[Entity]``.
+
+    The items may also be of a subclass of `Entity`.
+    """
     arguments = typing.get_args(data_type)
     return (
         typing.get_origin(data_type) is list

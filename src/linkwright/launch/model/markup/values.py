@@ -114,14 +114,14 @@ def coerce_to_type(value: str, data_type: Any = None, can_be_str: bool = False) 
     if not isinstance(value, str):
         raise TypeError(f"expected 'value' to be of type '{str}', but got {value!r} of type {type(value)}")
     if data_type is None:
-        return _by_yaml(value, f"Failed to convert '{value}' using yaml rules", can_be_str)
+        return _parse_yaml(value, f"Failed to convert '{value}' using yaml rules", can_be_str)
     scalar, is_list = extract_type(data_type)
     if is_list:
         return _coerce_to_list(value, scalar, can_be_str)
     if scalar is str:
         return value
     if scalar is bool:
-        made = _by_yaml(_TRUE_BY_NUMBER.get(value, value), f"Failed to convert '{value}' to '{bool}'", can_be_str)
+        made = _parse_yaml(_TRUE_BY_NUMBER.get(value, value), f"Failed to convert '{value}' to '{bool}'", can_be_str)
         if isinstance(made, (bool, str) if can_be_str else bool):
             return made
         raise ValueError(f"Cannot convert value '{value}' to '{bool}'")
@@ -136,7 +136,7 @@ def coerce_to_type(value: str, data_type: Any = None, can_be_str: bool = False) 
 def _coerce_to_list(value: str, scalar: type, can_be_str: bool) -> Any:
     accepted = (str, scalar) if can_be_str else (scalar,)
     problem = f"Cannot convert value '{value}' to a list of '{scalar.__name__}'"
-    made = _by_yaml(value, problem, can_be_str)
+    made = _parse_yaml(value, problem, can_be_str)
     if not isinstance(made, list):
         raise ValueError(problem)  # noqa: TRY004 - as in ROS
     if not all(isinstance(item, accepted) for item in made):
@@ -144,7 +144,7 @@ def _coerce_to_list(value: str, scalar: type, can_be_str: bool) -> Any:
     return made
 
 
-def _by_yaml(value: str, problem: str, can_be_str: bool) -> Any:
+def _parse_yaml(value: str, problem: str, can_be_str: bool) -> Any:
     import yaml
 
     if not value:
@@ -196,7 +196,7 @@ def get_typed_value(value: str | list[str], data_type: Any = None, can_be_str: b
 
 
 def is_substitution(value: Any) -> bool:
-    """Return whether a value is a substitution, or a list of strings and at least one substitution."""
+    """Return whether a value is a substitution, or a list of strings and some substitutions."""
     if isinstance(value, Substitution):
         return True
     if isinstance(value, str) or not isinstance(value, Iterable):

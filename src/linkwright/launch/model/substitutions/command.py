@@ -22,7 +22,7 @@ from linkwright.launch.model.declared_substitution import (
 from linkwright.launch.model.substitution import (
     perform_substitutions,
 )
-from linkwright.launch.model.xacro_words import parse_xacro_words
+from linkwright.launch.model.xacro_words import parse_xacro_arguments
 from linkwright.packages import current_finder
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
             ) from error
         if not words:
             raise error_at(self.place, "LAUNCH128", phrase("the command is empty"))
-        after_xacro = _words_of_xacro(words)
+        after_xacro = _xacro_arguments(words)
         if after_xacro is not None:
             before = len(words) - len(after_xacro)
             written = text.split(None, before)[before:]
@@ -75,7 +75,7 @@ class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
 
     def _expand(self, context: LaunchContext, words: list[str], written: str) -> str:
         try:
-            call, remark = parse_xacro_words(words, written, Path.cwd())
+            call, remark = parse_xacro_arguments(words, written, Path.cwd())
         except LinkwrightError as error:
             raise located(error, self.place) from error
         if remark:
@@ -104,7 +104,7 @@ class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
             ros_error = SubstitutionFailure(f"file not found: {error}")
             raise error_at(self.place, "LAUNCH129", message, ros_error=ros_error) from error
         if done.returncode != 0:
-            message = _with_output(
+            message = _append_output(
                 phrase("command '{text}' failed with exit status {status}", text=text, status=done.returncode),
                 done.stderr,
             )
@@ -113,14 +113,14 @@ class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
             )
             raise error_at(self.place, "LAUNCH129", message, ros_error=ros_error)
         if done.stderr and rule == "fail":
-            message = _with_output(phrase("command '{text}' wrote to stderr", text=text), done.stderr)
+            message = _append_output(phrase("command '{text}' wrote to stderr", text=text), done.stderr)
             hint = phrase("if that is not an error, pass on_stderr='warn' to Command")
             ros_error = SubstitutionFailure(
                 f"executed command showed stderr output. Command: {text}\nCaptured stderr output:\n{done.stderr}"
             )
             raise error_at(self.place, "LAUNCH129", message, hint, ros_error=ros_error)
         if done.stderr and rule == "warn":
-            message = _with_output(phrase("command '{text}' wrote to stderr", text=text), done.stderr)
+            message = _append_output(phrase("command '{text}' wrote to stderr", text=text), done.stderr)
             self._warn(context, "LAUNCH129", message)
         return done.stdout + done.stderr if rule == "capture" else done.stdout
 
@@ -130,7 +130,7 @@ class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
         context.warn(Diagnostic(code, message, span, Severity.WARNING, hint=hint, source=source))
 
 
-def _words_of_xacro(words: list[str]) -> list[str] | None:
+def _xacro_arguments(words: list[str]) -> list[str] | None:
     """Return the arguments of a ``xacro`` command, or None if the command runs another program."""
     if words[:3] == ["ros2", "run", "xacro"] and words[3:4] == ["xacro"]:
         return words[4:]
@@ -146,5 +146,5 @@ def _expand(context: LaunchContext, call: XacroCall) -> str:
     return text
 
 
-def _with_output(message: Phrase, output: str) -> Phrase:
+def _append_output(message: Phrase, output: str) -> Phrase:
     return joined([message, output.strip()], ":\n") if output.strip() else message

@@ -33,7 +33,7 @@ _ANONYMOUS = "anon"
 _NOT_IN_NAMES = str.maketrans(".-:", "___")
 
 
-def default_texts(given: Any) -> list[Substitution]:
+def normalize_default(given: Any) -> list[Substitution]:
     """Convert a default to substitutions; its parts may also be numbers and booleans."""
     parts = given if isinstance(given, (list, tuple)) else [given]
     return normalize_to_list_of_substitutions([part if isinstance(part, Substitution) else str(part) for part in parts])
@@ -48,7 +48,7 @@ class LaunchConfiguration(DeclaredSubstitution, tag="var", shown="LaunchConfig({
     """
 
     variable_name: Texts = Texts()
-    default: AnyOptionalTexts = AnyOptionalTexts(default=None, kw_only=True, read=default_texts)
+    default: AnyOptionalTexts = AnyOptionalTexts(default=None, kw_only=True, read=normalize_default)
 
     def perform(self, context: LaunchContext) -> str:
         """Return the value.

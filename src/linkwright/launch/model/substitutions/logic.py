@@ -29,7 +29,10 @@ _WORDS = {"true": True, "1": True, "false": False, "0": False}
 
 
 def _operand(value: Any) -> list[Substitution]:
-    """Convert an operand of a comparison to substitutions; it may also be a number, boolean or None."""
+    """Convert an operand of a comparison to substitutions.
+
+    The operand may also be a number, a boolean or None.
+    """
     if value is None:
         value = ""
     if isinstance(value, (bool, int, float)):

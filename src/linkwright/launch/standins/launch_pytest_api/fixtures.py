@@ -50,8 +50,8 @@ def fixture(
 
     The description is launched for the tests that request the fixture. The function returns or yields a
     ``LaunchDescription``, or a sequence whose first item is one. If a launch lasts longer than a test, the other
-    fixtures of this module must last as long. They are therefore added to the test's module, unless that module
-    defines its own.
+    fixtures of this module must last as long. They are therefore added to the test's module, unless that module defines
+    its own.
 
     Args:
         decorated: the function, if the decorator has no arguments.
@@ -62,7 +62,7 @@ def fixture(
     """
     scope = kwargs.get("scope", "function")
     if scope != "function":
-        _provide(sys._getframe(1).f_globals, scope)
+        _add_fixtures(sys._getframe(1).f_globals, scope)
 
     def decorate(function: Callable[..., Any]) -> Any:
         name = kwargs.get("name") or function.__name__
@@ -84,7 +84,7 @@ def options_of(function: object) -> LaunchOptions | None:
     return options if isinstance(options, LaunchOptions) else None
 
 
-def _provide(namespace: MutableMapping[str, Any], scope: str) -> None:
+def _add_fixtures(namespace: MutableMapping[str, Any], scope: str) -> None:
     """Add the fixtures of this module to a test module with a scope.
 
     Fixtures that the test module defines itself are not replaced. Fixtures added earlier are replaced if their scope is

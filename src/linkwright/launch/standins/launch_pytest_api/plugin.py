@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from linkwright.launch.engine.service import LaunchService
-from linkwright.launch.model.actions.testing import ReadyToTest, ready_actions
+from linkwright.launch.model.actions.testing import ReadyToTest, find_ready_actions
 from linkwright.launch.model.description import LaunchDescription
 from linkwright.launch.model.entity import LaunchDescriptionEntity
 from linkwright.launch.standins.launch_pytest_api.fixtures import (
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 __all__ = ["event_loop", "launch_context", "launch_service"]  # exported so that pytest finds the fixtures here
 
 _MARKER = "launch(fixture, shutdown=False): run the test beside the launch of a launch_pytest fixture, or after its end"
-_OVER = object()
+_EXHAUSTED = object()
 
 
 class LaunchTestWarning(pytest.PytestWarning):
@@ -102,7 +102,7 @@ def _launch(
     service: LaunchService, loop: asyncio.AbstractEventLoop, description: LaunchDescription, options: LaunchOptions
 ) -> None:
     """Start a launch, and wait until its `ReadyToTest` has been visited."""
-    actions = list(ready_actions(description.entities))
+    actions = list(find_ready_actions(description.entities))
     if len(actions) > 1:
         pytest.fail(f"launch fixture '{options.fixture}': only one ReadyToTest action may be in it", pytrace=False)
     if not actions:
@@ -191,7 +191,7 @@ class LaunchTest(pytest.Function):
             if inspect.isasyncgen(generator):
                 loop.run_until_complete(_next(generator))
             else:
-                loop.run_until_complete(loop.run_in_executor(None, next, generator, _OVER))
+                loop.run_until_complete(loop.run_in_executor(None, next, generator, _EXHAUSTED))
             self.begun = generator
             if self.options.scope == "function":
                 self._resume(loop, generator)
@@ -212,13 +212,13 @@ class LaunchTest(pytest.Function):
         __tracebackhide__ = True
         self._end_launch()
         is_async = inspect.isasyncgen(generator)
-        rest = loop.run_until_complete(_next(generator)) if is_async else next(generator, _OVER)
-        if rest is not _OVER:
+        rest = loop.run_until_complete(_next(generator)) if is_async else next(generator, _EXHAUSTED)
+        if rest is not _EXHAUSTED:
             pytest.fail("a launch test that is a generator must stop iteration after yielding once", pytrace=False)
 
 
 async def _next(generator: Any) -> object:
-    return await anext(generator, _OVER)
+    return await anext(generator, _EXHAUSTED)
 
 
 def _has_parts(test: Callable[..., Any]) -> bool:
@@ -252,7 +252,7 @@ def pytest_pycollect_makeitem(
         return None
     options = options_of(marker.kwargs.get("fixture"))
     if options is None:
-        return [_skipped(pytest.Function.from_parent(collector, name=name))]
+        return [_mark_skipped(pytest.Function.from_parent(collector, name=name))]
     pytest.mark.usefixtures(options.fixture, *FIXTURES[:2])(obj)
     items = list(collector._genfunctions(name, obj))
     tests = [LaunchTest.of(item, options) for item in items]
@@ -262,7 +262,7 @@ def pytest_pycollect_makeitem(
     return [*tests, *rests]
 
 
-def _skipped(item: pytest.Function) -> pytest.Function:
+def _mark_skipped(item: pytest.Function) -> pytest.Function:
     reason = 'the "fixture" keyword argument is required in pytest.mark.launch(), with a launch_pytest fixture'
     item.warn(LaunchTestWarning(reason))
     item.add_marker(pytest.mark.skip(reason))

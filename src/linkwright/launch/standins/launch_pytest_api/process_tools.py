@@ -64,7 +64,7 @@ class _Wait:
             deadline = self._deadline()
             while not value:
                 try:
-                    await asyncio.wait_for(event.wait(), _remaining(deadline))
+                    await asyncio.wait_for(event.wait(), _remaining_seconds(deadline))
                 except asyncio.TimeoutError:
                     self._given_up()
                     break
@@ -82,7 +82,7 @@ class _Wait:
             value = self._value()
             deadline = self._deadline()
             while not value:
-                if not event.wait(_remaining(deadline)):
+                if not event.wait(_remaining_seconds(deadline)):
                     self._given_up()
                     break
                 event.clear()
@@ -111,8 +111,11 @@ class _Wait:
             self._context.unregister_event_handler(handler)
 
 
-def _remaining(deadline: float | None) -> float | None:
-    """Return the seconds until a deadline on the monotonic clock, at least 0, or None if there is no deadline."""
+def _remaining_seconds(deadline: float | None) -> float | None:
+    """Return the seconds until a deadline on the monotonic clock, at least 0.
+
+    The result is None if there is no deadline.
+    """
     return None if deadline is None else max(deadline - time.monotonic(), 0.0)
 
 
@@ -133,7 +136,7 @@ def _waits(make: Callable[_P, _Wait]) -> tuple[Callable[_P, Coroutine[Any, Any, 
     return wait, wait_sync
 
 
-def _for_output(stream: str) -> Callable[..., _Wait]:
+def _output_wait(stream: str) -> Callable[..., _Wait]:
     def wait(
         launch_context: LaunchContext,
         execute_process_action: ExecuteLocal,
@@ -150,7 +153,7 @@ def _for_output(stream: str) -> Callable[..., _Wait]:
     return wait
 
 
-def _asserting_output(stream: str) -> Callable[..., _Wait]:
+def _output_assertion_wait(stream: str) -> Callable[..., _Wait]:
     def wait(
         launch_context: LaunchContext,
         execute_process_action: ExecuteLocal,
@@ -175,7 +178,7 @@ def _asserting_output(stream: str) -> Callable[..., _Wait]:
     return wait
 
 
-def _for_start(
+def _start_wait(
     launch_context: LaunchContext, execute_process_action: ExecuteLocal, timeout: float | None = None
 ) -> _Wait:
     """Wait until the process starts, and return whether it started in time."""
@@ -186,7 +189,7 @@ def _for_start(
     return _Wait(launch_context, handler, timeout)
 
 
-def _for_exit(
+def _exit_wait(
     launch_context: LaunchContext, execute_process_action: ExecuteLocal, timeout: float | None = None
 ) -> _Wait:
     """Wait until the process ends, and return whether it ended in time."""
@@ -209,9 +212,9 @@ def _output_reader(action: ExecuteLocal, stream: str) -> tuple[Callable[[Reactio
     return handler, getattr(action, f"get_{stream}")
 
 
-wait_for_output, wait_for_output_sync = _waits(_for_output("stdout"))
-wait_for_stderr, wait_for_stderr_sync = _waits(_for_output("stderr"))
-assert_output, assert_output_sync = _waits(_asserting_output("stdout"))
-assert_stderr, assert_stderr_sync = _waits(_asserting_output("stderr"))
-wait_for_start, wait_for_start_sync = _waits(_for_start)
-wait_for_exit, wait_for_exit_sync = _waits(_for_exit)
+wait_for_output, wait_for_output_sync = _waits(_output_wait("stdout"))
+wait_for_stderr, wait_for_stderr_sync = _waits(_output_wait("stderr"))
+assert_output, assert_output_sync = _waits(_output_assertion_wait("stdout"))
+assert_stderr, assert_stderr_sync = _waits(_output_assertion_wait("stderr"))
+wait_for_start, wait_for_start_sync = _waits(_start_wait)
+wait_for_exit, wait_for_exit_sync = _waits(_exit_wait)

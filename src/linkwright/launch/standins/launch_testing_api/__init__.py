@@ -1,1 +1,4 @@
-"""The API of ``launch_testing`` and ``launch_testing_ros``: unittest tests during and after a launch."""
+"""The API of ``launch_testing`` and ``launch_testing_ros``.
+
+Tests of ``unittest`` run during a launch and after it.
+"""

@@ -33,7 +33,7 @@ def assertExitCodes(
     *,
     strict_proc_matching: bool = True,
 ) -> None:
-    """Raise AssertionError unless all matching processes ended with one of the allowed exit codes.
+    """Raise AssertionError unless all matching processes ended with an allowed exit code.
 
     Args:
         proc_info: the records of exits.

@@ -12,7 +12,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from linkwright.launch.arguments import argument_listing
+from linkwright.launch.arguments import format_arguments
 from linkwright.launch.model.description import LaunchDescription
 from linkwright.launch.ros2launch_api import parse_launch_arguments
 from linkwright.launch.standins.launch_testing_api.results import unittestResultsToXml
@@ -84,7 +84,7 @@ def run(
 
 def print_arguments_of_launch_description(*, launch_description: LaunchDescription) -> None:
     """Print the arguments of a launch description."""
-    print(argument_listing(launch_description))
+    print(format_arguments(launch_description))
 
 
 def main() -> None:

@@ -64,7 +64,7 @@ class LaunchTestService:
 
         def on_exit(event: Any, _: Any) -> Any:
             if event.returncode == 0:
-                return self._passed(test)
+                return self._handle_pass(test)
             self._statuses.append(event.returncode)
             return self._failed(test, f"{_name(event.action)} test failed!")
 
@@ -74,7 +74,7 @@ class LaunchTestService:
                 self._tests[test] = _DROPPED
                 return None
             error = None if future is None else future.exception()
-            return self._passed(test) if error is None else self._failed(test, str(error))
+            return self._handle_pass(test) if error is None else self._failed(test, str(error))
 
         handler: Any
         if isinstance(action, ExecuteProcess):
@@ -114,7 +114,7 @@ class LaunchTestService:
             nonlocal written
             written = collate(written, output_filter(event.text) if output_filter else event.text)
             missing[:] = [text for text in missing if not matches(written, text)]
-            return None if missing else self._passed(test, side_effect)
+            return None if missing else self._handle_pass(test, side_effect)
 
         def on_exit(*_: Any) -> Any:
             return self._ended(test) if missing else None  # output may arrive after the exit
@@ -139,7 +139,7 @@ class LaunchTestService:
         status = int(launch_service.run(*args, **kwargs))
         return status or next(iter(self._statuses), int(_FAILED in self._tests.values()))
 
-    def _passed(self, test: str, side_effect: str | None = None) -> Any:
+    def _handle_pass(self, test: str, side_effect: str | None = None) -> Any:
         self._tests[test] = _PASSED
         if side_effect == "shutdown":
             return [_shutdown("shutdown after test")]

@@ -53,7 +53,7 @@ def create_output_regex_test(expected_patterns: Sequence[re.Pattern[bytes]]) -> 
 
 
 def create_output_test_from_file(output_file: str) -> _OutputTest:
-    """Return a test that is defined by a ``.txt`` file with texts or a ``.regex`` file with patterns.
+    """Return a test defined by a ``.txt`` file with texts or a ``.regex`` file with patterns.
 
     Args:
         output_file: the path of the file without the suffix.
@@ -61,14 +61,14 @@ def create_output_test_from_file(output_file: str) -> _OutputTest:
     Raises:
         RuntimeError: neither file exists.
     """
-    for suffix, create in ((".txt", create_output_lines_test), (".regex", _of_patterns)):
+    for suffix, create in ((".txt", create_output_lines_test), (".regex", _create_pattern_test)):
         path = Path(output_file + suffix)
         if path.is_file():
             return create(path.read_bytes().splitlines())
     raise RuntimeError(f"could not find output check file: {output_file}")
 
 
-def _of_patterns(texts: Sequence[bytes]) -> _OutputTest:
+def _create_pattern_test(texts: Sequence[bytes]) -> _OutputTest:
     return create_output_regex_test([re.compile(text) for text in texts])
 
 

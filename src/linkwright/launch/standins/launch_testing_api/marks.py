@@ -20,7 +20,7 @@ TIMEOUT = "__ready_to_test_action_timeout__"
 
 
 def parametrize(argnames: str, argvalues: Iterable[Any]) -> Callable[[Callable[..., Any]], Callable[[], Any]]:
-    """Decorate ``generate_test_description`` to launch its description once for each of several values.
+    """Decorate ``generate_test_description`` to launch once for each of several values.
 
     Args:
         argnames: the names of the arguments, separated by commas.
@@ -61,7 +61,7 @@ def post_shutdown_test() -> Callable[[type[C]], type[C]]:
 
 
 def ready_to_test_action_timeout(timeout: float) -> Callable[[F], F]:
-    """Decorate ``generate_test_description`` with the timeout in seconds for its `ReadyToTest` action."""
+    """Decorate ``generate_test_description`` with a timeout in seconds for its `ReadyToTest`."""
 
     def decorate(function: F) -> F:
         setattr(function, TIMEOUT, timeout)

@@ -70,7 +70,7 @@ def resolveProcesses(
     found = [
         execute_local
         for execute_local in known
-        if process in name_of(execute_local) and _has_words(execute_local, words)
+        if process in name_of(execute_local) and _has_arguments(execute_local, words)
     ]
     if found and not (strict_proc_matching and len(found) > 1):
         return found
@@ -89,7 +89,7 @@ def name_of(action: ExecuteLocal) -> str:
     return str((action.process_details or {}).get("name") or action.process_description.final_name or "")
 
 
-def _has_words(action: ExecuteLocal, words: Sequence[str] | None) -> bool:
+def _has_arguments(action: ExecuteLocal, words: Sequence[str] | None) -> bool:
     command = (action.process_details or {}).get("cmd", [])
     if words is None:
         return True

@@ -109,7 +109,9 @@ class ProcessProxy:
             return self._proc_info.proc_event.wait_for(lambda: self.terminated, timeout=timeout)
 
     def wait_for_output(self, condition: Callable[[str], Any] | None = None, timeout: float | None = None) -> Outcome:
-        """Wait for output of the process, and return whether it arrived in time, with the output so far.
+        """Wait for output of the process.
+
+        Return whether the output arrived in time, with the output so far.
 
         Args:
             condition: a predicate on the entire output; if omitted, any output suffices.

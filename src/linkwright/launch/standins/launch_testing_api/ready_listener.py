@@ -1,4 +1,4 @@
-"""An event handler that waits for a text in the output of a process (``launch_testing.event_handlers``)."""
+"""The event handler ``launch_testing.event_handlers.StdoutReadyListener``."""
 
 from __future__ import annotations
 

@@ -138,7 +138,7 @@ class ActiveIoHandler:
             return self._io_handler[key]
 
     def assertWaitFor(self, *args: Any, **kwargs: Any) -> None:
-        """Wait for a text in the output with `waitFor`, and raise AssertionError if it does not arrive in time."""
+        """Raise AssertionError unless a text arrives in the output in time; see `waitFor`."""
         if not self.waitFor(*args, **kwargs):
             raise AssertionError("Waiting for output timed out")
 

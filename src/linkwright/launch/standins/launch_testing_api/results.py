@@ -58,7 +58,7 @@ class TestResult(unittest.TextTestResult):
             getattr(self, name).extend(getattr(results, name))
 
 
-class _NotRun(unittest.TestResult):
+class _UnrunResult(unittest.TestResult):
     """The results of tests that did not run."""
 
     def __init__(self, test_run: _Run) -> None:
@@ -72,7 +72,7 @@ class _NotRun(unittest.TestResult):
         return dict.fromkeys(self.testCases, 0)
 
 
-class FailResult(_NotRun):
+class FailResult(_UnrunResult):
     """The results of tests whose launch ended before the tests finished: all of them failed.
 
     Args:
@@ -90,7 +90,7 @@ class FailResult(_NotRun):
         return False
 
 
-class SkipResult(_NotRun):
+class SkipResult(_UnrunResult):
     """The results of tests whose launch was skipped.
 
     Args:

@@ -215,7 +215,7 @@ class DataRepublisher:
 
 
 def get_rmw_output_filter(rmw_implementation: str, filter_type: str) -> list[str]:
-    """Return the prefixes or patterns of output lines that an rmw implementation declares as irrelevant.
+    """Return the prefixes or patterns of lines that an rmw implementation lets tests ignore.
 
     Args:
         rmw_implementation: the package of the rmw implementation.

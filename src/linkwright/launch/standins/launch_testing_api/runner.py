@@ -61,8 +61,7 @@ class _RunnerWorker:
         """Launch the description, run the tests, and return the results of the tests.
 
         Raises:
-            _LaunchDiedError: the launch ended before its tests had finished.
-            unittest.SkipTest: the launch is skipped.
+            _LaunchDiedError: the launch ended before its tests had finished. unittest.SkipTest: the launch is skipped.
         """
         run = self._test_run
         description, context = run.normalized_test_description(ready_fn=self._processes_launched.set)
@@ -184,7 +183,7 @@ class LaunchTestRunner:
         return results
 
     def validate(self) -> None:
-        """Check that the parameters of ``generate_test_description`` are those of its parametrization.
+        """Check the parameters of ``generate_test_description`` against its parametrization.
 
         Raises:
             Exception: a parameter is missing or unexpected.

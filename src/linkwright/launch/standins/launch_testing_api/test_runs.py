@@ -8,7 +8,7 @@ import unittest
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
-from linkwright.launch.model.actions.testing import ReadyToTest, ready_actions
+from linkwright.launch.model.actions.testing import ReadyToTest, find_ready_actions
 from linkwright.launch.model.description import LaunchDescription
 from linkwright.launch.standins.launch_testing_api.marks import AFTER_SHUTDOWN, MARKERS, PARAMETRIZED, TIMEOUT
 
@@ -48,7 +48,7 @@ class TestRun:
         self._cases = [*_cases(pre_shutdown_tests), *_cases(post_shutdown_tests)]  # suites drop finished tests
         if self.param_args:
             for case in self._cases:
-                _rename(case, case._testMethodName + self._shown_arguments())
+                _rename(case, case._testMethodName + self._format_arguments())
 
     @property
     def markers(self) -> dict[str, Any]:
@@ -67,7 +67,7 @@ class TestRun:
         """
         made = self._test_description_function()
         description, context = made if isinstance(made, tuple) else (made, {})
-        action = next(ready_actions(description.entities), None)
+        action = next(find_ready_actions(description.entities), None)
         if action is None:
             raise Exception(  # noqa: TRY002 - launch_testing raises it
                 f"generate_test_description functions must return a LaunchDescription containing a "
@@ -109,9 +109,9 @@ class TestRun:
         return iter(self._cases)
 
     def __str__(self) -> str:
-        return self.name + self._shown_arguments()
+        return self.name + self._format_arguments()
 
-    def _shown_arguments(self) -> str:
+    def _format_arguments(self) -> str:
         return f"[{', '.join(map(str, self.param_args.values()))}]" if self.param_args else ""
 
 

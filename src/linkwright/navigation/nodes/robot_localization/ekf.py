@@ -55,7 +55,7 @@ class EkfNode(SingleNode):
         self._toggled_on = True
         self._published_ns = -1
         self._clock = self._node.get_clock()
-        self._around = Surroundings(self._node, self._configuration, self._estimator, self._message_from_the_past)
+        self._around = Surroundings(self._node, self._configuration, self._estimator, self._on_old_message)
         self._sources = [Source(sensor, self._around) for sensor in self._configuration.sensors]
         self._open()
 
@@ -74,7 +74,7 @@ class EkfNode(SingleNode):
         if self._configuration.filter.control is not None:
             stamped: bool = node.get_parameter("stamped_control").value
             kind = get_message(f"geometry_msgs/msg/Twist{'Stamped' if stamped else ''}")
-            node.create_subscription(kind, "cmd_vel", self._commanded_stamped if stamped else self._commanded, 1)
+            node.create_subscription(kind, "cmd_vel", self._on_stamped_command if stamped else self._commanded, 1)
         node.create_subscription(pose, "set_pose", self._set_pose, 1)
         node.create_service(get_service("robot_localization/srv/SetPose"), "set_pose", self._on_set_pose)
         node.create_service(get_service("robot_localization/srv/ToggleFilterProcessing"), "toggle", self._on_toggle)
@@ -97,7 +97,7 @@ class EkfNode(SingleNode):
             self._node.get_logger().warning("Time has jumped: the filter restarts.")
         self._reset()
 
-    def _message_from_the_past(self) -> None:
+    def _on_old_message(self) -> None:
         if self._configuration.reset_on_time_jump and self._node.get_parameter("use_sim_time").value:
             self._reset()
 
@@ -200,7 +200,7 @@ class EkfNode(SingleNode):
     def _commanded(self, message: Any) -> None:
         self._follow(message, self._clock.now_ns())
 
-    def _commanded_stamped(self, message: Any) -> None:
+    def _on_stamped_command(self, message: Any) -> None:
         frame, base = message.header.frame_id, self._configuration.frames.base
         if frame not in ("", base):
             self._node.get_logger().warning(

@@ -31,7 +31,14 @@ from linkwright.geometry.single import (
 )
 from linkwright.graph import SENSOR_DATA_QOS, STATIC_TF_PUBLISHER_QOS, Graph, Parameter, ParameterType
 from linkwright.messages import TFMessage, TransformBatch, get_message, get_service
-from linkwright.navigation.estimation.geodesy import TangentPlane, Zone, convergence, degrees_of_utm, utm_of, zone_of
+from linkwright.navigation.estimation.geodesy import (
+    TangentPlane,
+    Zone,
+    convergence,
+    degrees_from_utm,
+    utm_from_degrees,
+    zone_from_degrees,
+)
 from linkwright.navigation.nodes.robot_localization.configuration import check_length
 from linkwright.nodes.frame_poses import FramePoses
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
@@ -174,7 +181,7 @@ class NavsatTransformNode(SingleNode):
         if self._local:
             self._plane = TangentPlane(latitude, longitude, altitude)
         else:
-            self._zone = self._zone or zone_of(latitude, longitude)
+            self._zone = self._zone or zone_from_degrees(latitude, longitude)
             turned += convergence(latitude, longitude, self._zone)
         x, y, z = self._grid(self._first_fix)
         roll, pitch, yaw = rpy_from_quaternion(self._heading)
@@ -211,9 +218,9 @@ class NavsatTransformNode(SingleNode):
     def _grid(self, place: Vector3) -> Vector3:
         """Convert a geodetic position (degrees and metres) to a point of the grid, in metres."""
         if self._plane is not None:
-            return self._plane.point_of(*place)
+            return self._plane.point_from_geodetic(*place)
         assert self._zone is not None, "it comes with the first place"
-        easting, northing = utm_of(place[0], place[1], self._zone)
+        easting, northing = utm_from_degrees(place[0], place[1], self._zone)
         return easting, northing, place[2]
 
     def _place(self, point: Vector3) -> Vector3:
@@ -221,14 +228,14 @@ class NavsatTransformNode(SingleNode):
         if self._plane is not None:
             return self._plane.place_of(point)
         assert self._zone is not None, "it comes with the first place"
-        latitude, longitude = degrees_of_utm(point[0], point[1], self._zone)
+        latitude, longitude = degrees_from_utm(point[0], point[1], self._zone)
         return latitude, longitude, point[2]
 
     def _in_map(self, place: Vector3) -> Vector3:
         assert self._map is not None, "it was placed"
         return compose(self._map, (*self._grid(place), 0.0, 0.0, 0.0, 1.0))[:3]
 
-    def _on_earth(self, point: Vector3) -> Vector3:
+    def _geodetic_from_map(self, point: Vector3) -> Vector3:
         assert self._map is not None, "it was placed"
         return self._place(compose(invert(self._map), (*point, 0.0, 0.0, 0.0, 1.0))[:3])
 
@@ -263,7 +270,7 @@ class NavsatTransformNode(SingleNode):
         odometry = self._odometry
         message = get_message("sensor_msgs/msg/NavSatFix")()
         message.header.stamp, message.header.frame_id = odometry.header.stamp, self._base_frame
-        message.latitude, message.longitude, message.altitude = self._on_earth(_pose(odometry)[:3])
+        message.latitude, message.longitude, message.altitude = self._geodetic_from_map(_pose(odometry)[:3])
         covariance = np.asarray(odometry.pose.covariance, dtype=np.float64).reshape(6, 6)[:3, :3]
         message.position_covariance = _turned(invert(grid_in_map), covariance).reshape(9)
         message.position_covariance_type = _KNOWN_COVARIANCE
@@ -296,7 +303,7 @@ class NavsatTransformNode(SingleNode):
     def _on_to_ll(self, request: Any, response: Any) -> Any:
         if self._ready():
             point, place = request.map_point, response.ll_point
-            place.latitude, place.longitude, place.altitude = self._on_earth((point.x, point.y, point.z))
+            place.latitude, place.longitude, place.altitude = self._geodetic_from_map((point.x, point.y, point.z))
         return response
 
     def _on_zone(self, request: Any, response: Any) -> Any:

@@ -25,7 +25,7 @@ from linkwright.navigation.estimation.readings import (
     Reading,
     read_acceleration,
     read_twist,
-    without_gravity,
+    subtract_gravity,
 )
 from linkwright.navigation.nodes.robot_localization.configuration import Configuration, SensorSettings
 from linkwright.nodes.frame_poses import FramePoses
@@ -183,7 +183,7 @@ class Source:
         acceleration = _vector(message.linear_acceleration)
         if self._settings.remove_gravity:
             attitude = self._attitude(message, mounting)
-            acceleration = without_gravity(acceleration, attitude, self._around.configuration.gravity)
+            acceleration = subtract_gravity(acceleration, attitude, self._around.configuration.gravity)
         covariance = _matrix(message.linear_acceleration_covariance, 3)
         reading = read_acceleration(acceleration, covariance, mounting, self._settings.used, two_d=self._two_d)
         self._add(reading, "acceleration", stamp_ns, self._settings.acceleration_threshold)

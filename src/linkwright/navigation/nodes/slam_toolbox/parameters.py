@@ -83,7 +83,7 @@ class Settings:
     mapper: MapperSettings
 
 
-class _Declared:
+class _ParameterReader:
     """The parameters of a node, each of which is declared when it is first read."""
 
     def __init__(self, node: Node) -> None:
@@ -121,7 +121,7 @@ def settings_of(node: Node) -> Settings:
     Raises:
         LinkwrightError: NODE433, a value is invalid; GRAPH201, a value has the wrong type.
     """
-    declared = _Declared(node)
+    declared = _ParameterReader(node)
     declared.without_effect()
     declared.flag("paused_new_measurements", False)
     _log_replaced(node)
@@ -188,7 +188,7 @@ def _start(node: Node) -> Floats | None:
     return np.array(pose, dtype=np.float64)
 
 
-def _mapper(declared: _Declared) -> MapperSettings:
+def _mapper(declared: _ParameterReader) -> MapperSettings:
     number, positive_number = declared.number, declared.more_than_nothing
     angle_offset = number("coarse_search_angle_offset", 0.349)
     angle_resolution = positive_number("coarse_angle_resolution", 0.0349)

@@ -10,7 +10,7 @@ import numpy as np
 from linkwright.diagnostics import LinkwrightError, render
 from linkwright.geometry.single import normalized, rpy_from_quaternion
 from linkwright.messages import get_message, get_service
-from linkwright.navigation.maps.map_files import SavedAs, save_map
+from linkwright.navigation.maps.map_files import MapSaveSettings, save_map
 from linkwright.navigation.nodes.slam_toolbox.toolbox import Toolbox
 from linkwright.navigation.slam.storage import path_of, save_graph
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
@@ -116,7 +116,7 @@ class ToolboxServices:
         name = request.name.data or f"map_{self._toolbox.node.get_clock().now_ns() // NANOSECONDS_PER_SECOND}"
         self._logger.info(f"SlamToolbox: Saving map as {Path(name).absolute()}.")
         try:
-            save_map(grid, SavedAs(name=name), self._logger.warning)
+            save_map(grid, MapSaveSettings(name=name), self._logger.warning)
             response.result = response.RESULT_SUCCESS
         except LinkwrightError as error:
             self._report(error)

@@ -1,4 +1,7 @@
-"""Records of the xacro calls and included launch files in a file, and the possible values of placeholders."""
+"""Records of the xacro calls and included launch files in a file.
+
+The texts in them may contain placeholders with several possible values.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Reader for calls of xacro in ``CMakeLists.txt``: macros of the package xacro, and commands that run it."""
+"""Reader for calls of xacro in ``CMakeLists.txt``.
+
+The calls are macros of the package xacro, and commands that run the program.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,7 @@ from pathlib import Path
 from linkwright.diagnostics import SourceText
 from linkwright.packages.readers.cmake_language import CMakeProgram, Command, within_package
 from linkwright.packages.readers.xacro_calls.call import CallingFile, XacroCall
-from linkwright.packages.readers.xacro_calls.command_line import xacro_command
+from linkwright.packages.readers.xacro_calls.command_line import parse_xacro_command
 from linkwright.packages.readers.xacro_calls.texts import Text, joined, literal
 
 _MACROS = frozenset({"xacro_add_xacro_file", "xacro_add_files"})
@@ -51,13 +54,13 @@ def _calls(command: Command, package: Path) -> Iterator[tuple[Text, dict[str, Te
     words = command.words
     if "COMMAND" in words:
         line = words[words.index("COMMAND") + 1 :]
-        found = xacro_command(joined(literal(f"{_path(word, command, package)} ") for word in line))
+        found = parse_xacro_command(joined(literal(f"{_path(word, command, package)} ") for word in line))
         if found is not None:
             yield found
 
 
 def _path(word: str, command: Command, package: Path) -> str:
-    """Return the path in the package's folder that an argument names, if it names a robot description.
+    """Return the path of the robot description that an argument names.
 
     Other arguments are returned unchanged.
     """

@@ -13,7 +13,7 @@ _END = lazy_pattern(r"^(\d?>.*|[|;]|&&)$")
 _WITH_VALUE = frozenset({"-o", "--output"})
 
 
-def xacro_command(line: Text) -> tuple[Text, dict[str, Text]] | None:
+def parse_xacro_command(line: Text) -> tuple[Text, dict[str, Text]] | None:
     """Return the file and the arguments of a command line that calls xacro.
 
     The result is None for other command lines. Unknown words become an argument without a name.

@@ -10,7 +10,7 @@ from linkwright.diagnostics import LinkwrightError, SourceText, Span
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_typing import Any
 from linkwright.packages.readers.xacro_calls.call import CallingFile, Inclusion, XacroCall, launch_argument
-from linkwright.packages.readers.xacro_calls.command_line import xacro_command
+from linkwright.packages.readers.xacro_calls.command_line import parse_xacro_command
 from linkwright.packages.readers.xacro_calls.texts import UNKNOWN, Open, Share, Text, literal
 from linkwright.xmltree import Element, parse
 
@@ -33,13 +33,13 @@ def read_xml(source: SourceText) -> CallingFile:
         return file
     inside = {id(child) for element in root.walk() if element.tag == "include" for child in element.elements()}
     for element in root.walk():
-        values = {key: markup_text(value, source.name) for key, value in element.attributes.items()}
+        values = {key: parse_markup_text(value, source.name) for key, value in element.attributes.items()}
         if element.tag in ("arg", "let") and id(element) not in inside and "name" in element.attributes:
             default = values.get("default", values.get("value"))
             file.declare(element.attributes["name"], default, tuple(_offered(element)))
         elif element.tag == "include" and "file" in values:
             arguments = {
-                child.attributes.get("name", ""): markup_text(child.attributes["value"], source.name)
+                child.attributes.get("name", ""): parse_markup_text(child.attributes["value"], source.name)
                 for child in element.elements()
                 if child.tag in ("arg", "let") and "value" in child.attributes
             }
@@ -84,13 +84,15 @@ def _read_entity(entity: Any, source: SourceText, file: CallingFile) -> None:
         if tag in ("arg", "let") and "name" in attributes:
             default = attributes.get("default", attributes.get("value"))
             offered = tuple(literal(str(mapping["value"])) for mapping in _mappings(attributes.get("choice"), "value"))
-            written = None if default is None else markup_text(str(default), source.name)
+            written = None if default is None else parse_markup_text(str(default), source.name)
             file.declare(str(attributes["name"]), written, offered)
             continue
         if tag == "include" and "file" in attributes:
             given = _mappings(attributes.get("arg", attributes.get("let")), "name")
-            arguments = {str(item["name"]): markup_text(str(item.get("value", "")), source.name) for item in given}
-            file.inclusions.append(Inclusion(markup_text(str(attributes["file"]), source.name), arguments))
+            arguments = {
+                str(item["name"]): parse_markup_text(str(item.get("value", "")), source.name) for item in given
+            }
+            file.inclusions.append(Inclusion(parse_markup_text(str(attributes["file"]), source.name), arguments))
         for text in _strings(value):
             _note(file, list(_commands(text, source.name)), source.span(max(source.text.find(text), 0)))
         for inner in value if isinstance(value, list) else ():
@@ -111,12 +113,12 @@ def _strings(value: Any) -> Iterator[str]:
 
 def _note(file: CallingFile, lines: list[Text], span: Span | None) -> None:
     for line in lines:
-        found = xacro_command(line)
+        found = parse_xacro_command(line)
         if found is not None and span is not None:
             file.calls.append(XacroCall(*found, span, is_command=True))
 
 
-def markup_text(text: str, file: str) -> Text:
+def parse_markup_text(text: str, file: str) -> Text:
     """Convert a text of a launch file, with a placeholder for each ``$(...)``.
 
     Args:
@@ -154,14 +156,14 @@ def _substituted(inside: str, file: str) -> Text:
     if tag in _ARGUMENTS:
         return (launch_argument(rest),)
     if tag in _SHARES:
-        return (Share(markup_text(rest, file)),)
+        return (Share(parse_markup_text(rest, file)),)
     if tag == "dirname":
         return literal(os.path.dirname(file))  # noqa: PTH120 - a part of a path as text
     if tag == "find-exec":
         return literal(rest)
     if tag in ("env", "optenv"):
         default = rest.partition(" ")[2]
-        return markup_text(default.strip(), file) if default else (UNKNOWN,)
+        return parse_markup_text(default.strip(), file) if default else (UNKNOWN,)
     return (UNKNOWN,)
 
 
@@ -178,5 +180,5 @@ def _line(written: str, file: str) -> Text:
     quote = written[:1]
     if quote in ("'", '"'):
         end = written.rfind(quote)
-        return markup_text(written[1 : end if end > 0 else None], file)
-    return markup_text(written, file)
+        return parse_markup_text(written[1 : end if end > 0 else None], file)
+    return parse_markup_text(written, file)

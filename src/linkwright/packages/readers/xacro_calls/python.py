@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from linkwright.diagnostics import SourceText
 from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
 from linkwright.packages.readers.xacro_calls.call import CallingFile, Inclusion, XacroCall
-from linkwright.packages.readers.xacro_calls.command_line import xacro_command
+from linkwright.packages.readers.xacro_calls.command_line import parse_xacro_command
 from linkwright.packages.readers.xacro_calls.python_scopes import Function, Scope, walk
 from linkwright.packages.readers.xacro_calls.python_texts import UNKNOWN_ENTRIES, Entries, Items, PythonTexts, Value
 from linkwright.packages.readers.xacro_calls.texts import Selection, Text, joined, resolve
@@ -49,9 +49,11 @@ class _Reader:
         """Collect the calls and inclusions of the file."""
         for node, scope in self._nodes:
             if isinstance(node, ast.Call) and called_name(node).endswith("DeclareLaunchArgument"):
-                self._declaration(node, scope)
+                self._read_declaration(node, scope)
             elif isinstance(node, ast.Call) and called_name(node).endswith("Command") and node.args:
-                self._handled.update(_lists_of(node.args[0], scope))  # its items may be parts of command-line arguments
+                self._handled.update(
+                    _assigned_expressions(node.args[0], scope)
+                )  # its items may be parts of command-line arguments
         for node, scope in self._nodes:
             if node in self._handled:
                 self._handled.update(ast.iter_child_nodes(node))
@@ -62,7 +64,7 @@ class _Reader:
             elif isinstance(node, (ast.JoinedStr, ast.BinOp, ast.Constant, ast.List)):
                 self._command(node, scope)
 
-    def _declaration(self, node: ast.Call, scope: Scope) -> None:
+    def _read_declaration(self, node: ast.Call, scope: Scope) -> None:
         name = self._texts.text(node.args[0] if node.args else argument_of(node, "name"), scope)
         default, choices = argument_of(node, "default_value"), argument_of(node, "choices")
         others = self._texts.value(choices, scope) if choices is not None else Items(())
@@ -76,12 +78,12 @@ class _Reader:
         name = called_name(node).rpartition(".")[2]
         if name == "Command":
             written = node.args[0] if node.args else argument_of(node, "command")
-            self._note(xacro_command(self._texts.text(written, scope)), node, is_command=True)
+            self._note(parse_xacro_command(self._texts.text(written, scope)), node, is_command=True)
             self._handled.update(ast.iter_child_nodes(node))
         elif name == "IncludeLaunchDescription":
-            self._inclusion(node, scope)
+            self._read_inclusion(node, scope)
         elif name == "robot_description" and isinstance(node.func, ast.Attribute):
-            self._of_builder(node, scope)
+            self._read_builder_call(node, scope)
         else:
             self._expansion(node, name, scope)
 
@@ -94,7 +96,7 @@ class _Reader:
         else:
             line = value if isinstance(value, tuple) else ()
         if any(isinstance(piece, str) and "xacro" in piece for piece in line):
-            self._note(xacro_command(line), node, is_command=True)
+            self._note(parse_xacro_command(line), node, is_command=True)
         if not isinstance(node, ast.List):
             self._handled.update(ast.iter_child_nodes(node))
 
@@ -115,7 +117,7 @@ class _Reader:
             is_command = name == "Xacro" or name not in _WITHOUT_ARGUMENTS  # a helper may build a command line
             self._note((paths[0], dict(_texts_of(mapping))), node, is_command=is_command)
 
-    def _of_builder(self, node: ast.Call, scope: Scope) -> None:
+    def _read_builder_call(self, node: ast.Call, scope: Scope) -> None:
         """Record a call ``MoveItConfigsBuilder(...).robot_description(...)``."""
         builder = next((inner for inner in ast.walk(node.func) if _is_builder(inner)), None)
         if not isinstance(builder, ast.Call):
@@ -133,7 +135,7 @@ class _Reader:
         arguments = dict(_texts_of(mappings.values)) if isinstance(mappings, Entries) else {}
         self._note((_below_share(folder, file), arguments), node, is_command=True)  # arguments as from substitutions
 
-    def _inclusion(self, node: ast.Call, scope: Scope) -> None:
+    def _read_inclusion(self, node: ast.Call, scope: Scope) -> None:
         source = node.args[0] if node.args else argument_of(node, "launch_description_source")
         if isinstance(source, ast.Call) and called_name(source).endswith("LaunchDescriptionSource"):
             source = source.args[0] if source.args else argument_of(source, "launch_file_path")
@@ -161,7 +163,7 @@ class _Reader:
             self._file.calls.append(XacroCall(*call, self._python.span(node), is_command))
 
 
-def _lists_of(node: ast.expr, scope: Scope) -> Iterator[ast.AST]:
+def _assigned_expressions(node: ast.expr, scope: Scope) -> Iterator[ast.AST]:
     """Yield the expressions that are assigned to a name."""
     found = scope.find(node.id) if isinstance(node, ast.Name) else None
     yield from (binding.value for binding in (found[1] if found else ()) if binding.value is not None)

@@ -44,7 +44,7 @@ class Scope:
     entries: dict[str, list[tuple[ast.expr, ast.expr]]] = field(default_factory=dict)
 
     def find(self, name: str) -> tuple[Scope, list[Binding]] | None:
-        """Return the innermost scope that binds a name, with the bindings, or None if no scope binds the name."""
+        """Return the innermost scope that binds a name, with the bindings, or None if none does."""
         scope: Scope | None = self
         while scope is not None:
             if name in scope.names:
@@ -91,7 +91,7 @@ def _bind(node: ast.AST, scope: Scope) -> None:
 
 
 def _bind_added(method: ast.Attribute, args: list[ast.expr], scope: Scope) -> None:
-    """Record the items that ``append``, ``extend`` or ``update`` add to a list or mapping of a scope."""
+    """Record the items that ``append``, ``extend`` or ``update`` add to a name of a scope."""
     bindings = scope.names.get(method.value.id) if isinstance(method.value, ast.Name) else None
     if bindings and len(args) == 1 and method.attr in ("append", "extend", "update"):
         added = ast.copy_location(ast.List(args, ast.Load()), args[0]) if method.attr == "append" else args[0]

@@ -1,4 +1,7 @@
-"""Evaluation of Python expressions to texts, lists and mappings, with placeholders for unknown values."""
+"""Evaluation of Python expressions to texts, lists and mappings.
+
+Placeholders represent values with several possibilities.
+"""
 
 from __future__ import annotations
 
@@ -157,7 +160,7 @@ class PythonTexts:
             return owner.values[node.slice.value] if abs(node.slice.value) < len(owner.values) else _OPEN
         return _OPEN
 
-    def _got(self, owner: ast.expr, node: ast.Call, scope: Scope) -> Value:
+    def _get_call_value(self, owner: ast.expr, node: ast.Call, scope: Scope) -> Value:
         """Return the value of ``mapping.get(key, default)``.
 
         The default is returned only if the mapping is known and does not contain the key.
@@ -186,7 +189,7 @@ class PythonTexts:
         if name in _JOINS:
             return self._joined_path(node, name, owner, scope)
         if name == "get" and owner is not None and first is not None and "environ" not in ast.unparse(owner):
-            return self._got(owner, node, scope)
+            return self._get_call_value(owner, node, scope)
         if (name in ("getenv", "get") and len(node.args) == 2) or name == "EnvironmentVariable":
             default = argument_of(node, "default_value") or (node.args[1] if len(node.args) > 1 else None)
             return self.value(default, scope)
@@ -284,7 +287,10 @@ class PythonTexts:
         return self._rows_of(node, lasting, is_certain=False)
 
     def _rows_of(self, node: ast.expr | None, values: Sequence[Value], *, is_certain: bool) -> Value:
-        """Return a placeholder for one of several values; for lists of equal length, a list of placeholders."""
+        """Return a placeholder for one of several values.
+
+        For lists of equal length, the result is a list of placeholders.
+        """
         name = "unknown" if node is None else f"at:{node.lineno}:{node.col_offset}"
         width = {len(value.values) if isinstance(value, Items) else 0 for value in values}
         if len(width) != 1:
@@ -297,13 +303,13 @@ class PythonTexts:
         return Items(tuple((Open(name, column),) for column in range(columns))) if columns else (Open(name),)
 
     def _parameter(self, name: str, scope: Scope) -> Value:
-        """Return the value of a function's parameter, which pytest or calls in the same file determine."""
+        """Return the value of a function's parameter, from pytest or from calls in the same file."""
         function = scope.function
         assert function is not None
         outer = scope.around or scope
         for decorator in function.decorator_list:
             if isinstance(decorator, ast.Call) and called_name(decorator).endswith("parametrize") and decorator.args:
-                names = self._parametrized(decorator.args[0], outer)
+                names = self._parametrized_names(decorator.args[0], outer)
                 if name in names and len(decorator.args) > 1:
                     value = self._any_of(decorator.args[1], outer)
                     if len(names) == 1:
@@ -321,7 +327,7 @@ class PythonTexts:
             return Entries({**value.values, **UNKNOWN_ENTRIES}) if isinstance(value, Entries) else value
         return values[0] if len(values) == 1 else self._one_of(call, values)
 
-    def _parametrized(self, node: ast.expr, scope: Scope) -> list[str]:
+    def _parametrized_names(self, node: ast.expr, scope: Scope) -> list[str]:
         value = self.value(node, scope)
         if isinstance(value, Items):
             return [_plain(_as_text(item)) or "" for item in value.values]

@@ -104,7 +104,7 @@ def joined_path(parts: Sequence[Text]) -> Text:
 
 
 def resolve(text: Text, choices: Mapping[str, Choice], selection: Selection, depth: int = 0) -> str | None:
-    """Fill the placeholders of a text, and return it as a string, or None if a placeholder has no value.
+    """Fill the placeholders of a text, and return the string; None if a value is missing.
 
     A share folder is written as its `share_mark`.
     """
@@ -153,7 +153,7 @@ def _chosen(place: Open, choices: Mapping[str, Choice], selection: Selection) ->
 
 
 def choices_in(text: Text, choices: Mapping[str, Choice], given: Mapping[str, str]) -> list[str]:
-    """Return the names of the choices that a text depends on, without duplicates and names in `given`."""
+    """Return the names of the choices that a text depends on, except names in `given`."""
     found: dict[str, None] = {}
     waiting: list[Text] = [text]
     while waiting:
@@ -180,11 +180,10 @@ def selections(text: Text, choices: Mapping[str, Choice], given: Mapping[str, st
 def variations(
     texts: Iterable[Text], choices: Mapping[str, Choice], start: Selection
 ) -> Iterator[tuple[Selection, bool]]:
-    """Yield selections of rows for the placeholders of several texts, each with whether it is known to occur.
+    """Yield selections of rows for several texts, each with whether it is known to occur.
 
     First, every row of every choice occurs, one choice at a time. Then pairs of rows follow, which may not occur
-    together.
-    There would be too many combinations of all choices.
+    together. There would be too many combinations of all choices.
     """
     names = dict.fromkeys(name for text in texts for name in choices_in(text, choices, start.given))
     free = [name for name in names if name not in start.rows and len(choices[name].rows) > 1]

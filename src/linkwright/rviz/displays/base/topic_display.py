@@ -255,7 +255,7 @@ class TopicDisplay(DataDisplay, ABC):
                 topic,
                 self._received,
                 qos,
-                event_callbacks=SubscriptionEventCallbacks(incompatible_qos=self._incompatible),
+                event_callbacks=SubscriptionEventCallbacks(incompatible_qos=self._qos_incompatible),
             )
         except LinkwrightError as error:
             self.set_status_row(
@@ -277,11 +277,11 @@ class TopicDisplay(DataDisplay, ABC):
         if self._release is not None:
             self._release()
             self._release = None
-        self._in_time()
+        self._cancel_late_report()
         self._waiting.clear()
         self._held.clear()
 
-    def _incompatible(self, info: Any) -> None:
+    def _qos_incompatible(self, info: Any) -> None:
         policy = getattr(info.last_policy_kind, "name", str(info.last_policy_kind))
         self._incompatibility = phrase(
             "A publisher offers incompatible QoS. Last incompatible policy: {policy}", policy=policy
@@ -396,14 +396,14 @@ class TopicDisplay(DataDisplay, ABC):
                 fixed_frame=self._fixed_frame,
                 reason=error.diagnostics[0].message,
             )
-            self._could_not_place(reason, stamp_ns, is_late=isinstance(error, ExtrapolationException))
+            self._report_unplaced(reason, stamp_ns, is_late=isinstance(error, ExtrapolationException))
             return False
-        self._in_time()
+        self._cancel_late_report()
         self.set_status_row(TRANSFORM, "ok", phrase("Transform OK"))
         self._process(message, pose)
         return True
 
-    def _could_not_place(self, reason: Phrase, stamp_ns: int, *, is_late: bool) -> None:
+    def _report_unplaced(self, reason: Phrase, stamp_ns: int, *, is_late: bool) -> None:
         """Report a message whose transform is not available.
 
         A transform that is only late is reported if no message could be placed for a second.
@@ -411,11 +411,11 @@ class TopicDisplay(DataDisplay, ABC):
         if not is_late:
             self.set_status_row(TRANSFORM, "error", reason)
             return
-        self._late_reason = self._with_clocks(reason, stamp_ns)
+        self._late_reason = self._add_clock_advice(reason, stamp_ns)
         if self._late is None:
             self._late = asyncio.get_running_loop().call_later(_LATE, self._report_late)
 
-    def _with_clocks(self, reason: Phrase, stamp_ns: int) -> Phrase:
+    def _add_clock_advice(self, reason: Phrase, stamp_ns: int) -> Phrase:
         """Return the reason, preceded by advice on the clocks if the stamp is far from the local time."""
         ahead = (stamp_ns - self.context.node.get_clock().now().nanoseconds) * 1e-9
         if abs(ahead) < _OTHER_CLOCK:
@@ -439,7 +439,7 @@ class TopicDisplay(DataDisplay, ABC):
         if self._waiting:
             self.set_status_row(TRANSFORM, "error", self._late_reason)
 
-    def _in_time(self) -> None:
+    def _cancel_late_report(self) -> None:
         if self._late is not None:
             self._late.cancel()
             self._late = None

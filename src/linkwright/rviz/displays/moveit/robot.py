@@ -16,7 +16,7 @@ from linkwright.page.files import MeshIndex
 from linkwright.page.protocol.markers import MarkerKind, MarkerMesh, MarkerShape
 from linkwright.page.protocol.robot import LinkScene, Shape
 from linkwright.rviz.displays.moveit.solids import Color
-from linkwright.rviz.markers.shapes import made_marker, pose_of
+from linkwright.rviz.markers.shapes import make_marker, pose_of
 from linkwright.rviz.robot import SceneBuilder
 from linkwright.urdf import Robot
 
@@ -153,7 +153,7 @@ class PosableRobot:
         if not all(map(math.isfinite, (at.x, at.y, at.z, turn.x, turn.y, turn.z, turn.w))):
             raise UnusableStateError(phrase("The state has invalid floating point values (nans or infs)"))
         state.frame = frame.removeprefix("/")
-        x, y, z, qx, qy, qz, qw = pose_of(_PoseOf(at, turn))
+        x, y, z, qx, qy, qz, qw = pose_of(_TransformAsPose(at, turn))
         state.root_in_frame = (x, y, z, qx, qy, qz, qw)
 
     def set_joints(self, state: JointPositions, names: Any, positions: Any) -> list[str]:
@@ -222,7 +222,7 @@ class PosableRobot:
 
 
 @dataclass(frozen=True, slots=True)
-class _PoseOf:
+class _TransformAsPose:
     """A transform under the attribute names of a pose message."""
 
     position: Any
@@ -239,7 +239,7 @@ class _Place:
     pose: Transform
 
     def marker(self, kind: MarkerKind, scale: list[float], color: Color, mesh: MarkerMesh | None = None) -> MarkerShape:
-        return made_marker(self.namespace, self.name, kind, self.pose, scale, color, frame=self.frame, mesh=mesh)
+        return make_marker(self.namespace, self.name, kind, self.pose, scale, color, frame=self.frame, mesh=mesh)
 
     def end(self, number: int, z: float) -> _Place:
         pose = compose(self.pose, (0.0, 0.0, z, 0.0, 0.0, 0.0, 1.0))

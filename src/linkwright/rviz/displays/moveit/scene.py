@@ -43,7 +43,7 @@ class SceneObject:
         shapes: dict[str, Any] = {name: tuple(getattr(message, name)) for name in _SHAPES}
         return cls(message.id, message.header.frame_id.removeprefix("/"), message.pose, **shapes)
 
-    def with_more(self, message: Any) -> SceneObject:
+    def with_added_shapes(self, message: Any) -> SceneObject:
         """Return a copy of the object with the message's shapes added."""
         shapes: dict[str, Any] = {name: (*getattr(self, name), *getattr(message, name)) for name in _SHAPES}
         return replace(self, **shapes)
@@ -176,7 +176,7 @@ class Scene:
             else:
                 self._objects[name] = known.moved(message)
         elif operation == _APPEND and known is not None:
-            self._objects[name] = known.with_more(message)
+            self._objects[name] = known.with_added_shapes(message)
         else:
             self._objects[name] = SceneObject.of(message)
 
@@ -195,7 +195,7 @@ class Scene:
         held = SceneObject.of(message.object)
         before = self._held.get(name)
         if message.object.operation == _APPEND and before is not None:
-            held = before[1].with_more(message.object)
+            held = before[1].with_added_shapes(message.object)
         if not held.has_shapes:
             self.problems[name] = phrase("The attached object '{name}' has no shapes", name=name)
             return

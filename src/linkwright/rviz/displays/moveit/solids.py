@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from linkwright.diagnostics import phrase
 from linkwright.geometry.single import Transform, compose
 from linkwright.page.protocol.markers import MarkerKind, MarkerShape
-from linkwright.rviz.markers.shapes import made_marker, pose_of
+from linkwright.rviz.markers.shapes import make_marker, pose_of
 
 Color = tuple[float, float, float, float]
 """Red, green, blue, alpha, from 0 to 1."""
@@ -70,7 +70,7 @@ def object_markers(message: Any, namespace: str, color: Color, *, frame: str, ba
             if not all(map(math.isfinite, (*pose, *scale))) or not np.isfinite(points).all():
                 raise BadObjectError(phrase("Contains invalid floating point values (nans or infs)"))
             name = f"{message.id} {what} {number}" if made else message.id
-            made.append(made_marker(namespace, name, kind, pose, scale, color, frame=frame, points=points))
+            made.append(make_marker(namespace, name, kind, pose, scale, color, frame=frame, points=points))
     return made
 
 

@@ -90,7 +90,7 @@ def _seconds(duration: Any) -> float:
     return float(duration.sec) + float(duration.nanosec) * 1e-9
 
 
-def shown_for(text: str, duration: float) -> float:
+def display_seconds(text: str, duration: float) -> float:
     """Return how many seconds a state is shown.
 
     Args:
@@ -104,7 +104,7 @@ def shown_for(text: str, duration: float) -> float:
     if factor and float(factor[1]) > 0.0:
         return duration / float(factor[1])
     fixed = _SECONDS.fullmatch(text)
-    return float(fixed[1]) if fixed else shown_for(READ_AS, duration)
+    return float(fixed[1]) if fixed else display_seconds(READ_AS, duration)
 
 
 class MotionPlayer:
@@ -203,7 +203,7 @@ class MotionPlayer:
         assert self.motion is not None
         text = self._display.properties.text(*self._above, "State Display Time")
         durations = self.motion.durations
-        seconds = shown_for(text, durations[min(self._place, len(durations) - 1)])
+        seconds = display_seconds(text, durations[min(self._place, len(durations) - 1)])
         self._timer = asyncio.get_running_loop().call_later(max(_LEAST_WAIT, seconds), self._step)
 
     def _step(self) -> None:

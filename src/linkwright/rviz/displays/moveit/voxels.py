@@ -11,7 +11,7 @@ from linkwright.geometry.single import Transform
 from linkwright.page.protocol.markers import MarkerShape
 from linkwright.rviz.config.schema import PropertySpec
 from linkwright.rviz.displays.moveit.octree import Cells
-from linkwright.rviz.markers.shapes import made_marker
+from linkwright.rviz.markers.shapes import make_marker
 
 _OCCUPIED, _FREE, _ALL = "Occupied Voxels", "Free Voxels", "All Voxels"
 _BY_HEIGHT, BY_PROBABILITY = "Z-Axis", "Cell Probability"
@@ -51,7 +51,7 @@ def octomap_markers(
         by_probability: whether the colour of a cell shows the probability that the cell is occupied, instead of its
             height.
     """
-    cells = cells.chosen(_is_seen(cells))
+    cells = cells.chosen(_visible_mask(cells))
     if not len(cells.sizes):
         return []
     colors = np.empty((len(cells.sizes), 4), dtype=np.float32)
@@ -72,7 +72,7 @@ def octomap_markers(
         edges = [float(size)] * 3
         name = f"octomap {size:g}"
         made.append(
-            made_marker(
+            make_marker(
                 namespace,
                 name,
                 "cube_list",
@@ -90,7 +90,7 @@ def octomap_markers(
 _RAINBOW = np.array([colorsys.hsv_to_rgb(0.8 * (1.0 - step / 63.0), 1.0, 1.0) for step in range(64)], dtype=np.float32)
 
 
-def _is_seen(cells: Cells) -> NDArray[np.bool_]:
+def _visible_mask(cells: Cells) -> NDArray[np.bool_]:
     """Return a mask of the cells that have a side without a neighbour of the same size."""
     seen = np.ones(len(cells.sizes), dtype=np.bool_)
     for size in np.unique(cells.sizes):

@@ -190,7 +190,7 @@ class ModellingFeature(PageFeature):
 
         packages = self.context.finder
         described = await asyncio.to_thread(EditedWorld.of_text, await self._described(), packages)
-        name = await self._simulated_file()
+        name = await self._request_world_file()
         path = await asyncio.to_thread(ResourceFinder(packages).world, name) if name else None
         if path is not None:
             with suppress(EditError, LinkwrightError):  # On another machine, this path may be a different file.
@@ -200,7 +200,7 @@ class ModellingFeature(PageFeature):
                     return found
         return described
 
-    async def _simulated_file(self) -> str:
+    async def _request_world_file(self) -> str:
         """Return the value of the simulator's parameter ``world``.
 
         An empty string is returned if there is no such parameter, or if the simulator does not respond.

@@ -96,14 +96,14 @@ class SimulatedSystem(Hardware):
             )
         for joint in self._joints.values():
             joint.begin()
-        self._sensors = self._found_sensors(plugin)
+        self._sensors = self._create_sensors(plugin)
 
     def _forget(self, component: str) -> None:
         """Remove the interfaces of a component that the model does not have."""
         self.states = [state for state in self.states if state.component != component]
         self.commands = [command for command in self.commands if command.component != component]
 
-    def _found_sensors(self, plugin: ControlledModel) -> list[SimulatedSensor]:
+    def _create_sensors(self, plugin: ControlledModel) -> list[SimulatedSensor]:
         found = []
         there = sensors_of(plugin.place)
         for sensor in self.description.sensors:

@@ -118,7 +118,7 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
         if self._loaded:
             return
         manager = self._manager
-        self._loaded = load_hardware(manager, message.data, DescriptionLibrary(), self._system)
+        self._loaded = load_hardware(manager, message.data, DescriptionLibrary(), self._create_system)
         if not self._loaded:
             return
         services = ManagerServices(manager, self._manager_node)
@@ -127,7 +127,7 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
         self.every(manager.update_rate, self._update)
         manager.resume(self.left.pop(self._manager_node.name, SavedState()))
 
-    def _system(self, description: HardwareDescription, logger: Logger) -> Hardware:
+    def _create_system(self, description: HardwareDescription, logger: Logger) -> Hardware:
         holds = self.parameters.hold_joints
         system = SimulatedSystem(description, logger, self, holds=holds, gain=self._gain, values=self._values)
         self._systems.append(system)

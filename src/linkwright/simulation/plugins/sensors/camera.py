@@ -24,9 +24,9 @@ from linkwright.simulation.plugins.parameters import NoParameters, parameter
 from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, FrameName, SensorPlugin
 from linkwright.simulation.plugins.sensors.clouds import fill_camera_cloud
 from linkwright.simulation.plugins.sensors.images import (
+    DEFAULT_ENCODING,
+    DEPTH_FORMATS,
     ENCODINGS,
-    OF_DEPTHS,
-    USUAL_ENCODING,
     PixelNoise,
     clip_depth,
     fill_camera_info,
@@ -66,7 +66,7 @@ class CameraPlugin(SensorPlugin[P], Generic[P]):
     def make_sensor(self) -> None:
         """Create the cameras of the sensor, with a new random number generator for their noise."""
         generator = self.random
-        self.cameras = [self._mounted(camera, generator) for camera in self.sensor.sensor.cameras or (Camera(),)]
+        self.cameras = [self._mount_camera(camera, generator) for camera in self.sensor.sensor.cameras or (Camera(),)]
 
     def start(self) -> None:
         """Acquire the shared renderer, and create the cameras and the topics."""
@@ -91,11 +91,11 @@ class CameraPlugin(SensorPlugin[P], Generic[P]):
         fill_image(message, rendered.colour, camera.encoding)  # type: ignore[arg-type]  # it was asked for
         output.publish(message)
 
-    def _mounted(self, camera: Camera, generator: np.random.Generator) -> MountedCamera:
+    def _mount_camera(self, camera: Camera, generator: np.random.Generator) -> MountedCamera:
         encoding = ENCODINGS.get(camera.image.format.upper())
         if encoding is None:
-            encoding = USUAL_ENCODING
-            if camera.image.format.upper() not in OF_DEPTHS:
+            encoding = DEFAULT_ENCODING
+            if camera.image.format.upper() not in DEPTH_FORMATS:
                 unknown = phrase("'{format}' is not an image format; bgr8 is used", format=camera.image.format)
                 self.node.logger.warning(unknown)
         pose = compose(self.sensor.pose, transform_of(camera.pose.pose))

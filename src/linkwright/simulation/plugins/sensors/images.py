@@ -23,9 +23,9 @@ ENCODINGS = {
     "BAYER_GRBG8": "bayer_grbg8", "BAYER_RGGR8": "bayer_rggb8",
 }  # fmt: skip
 """The formats of SDF, and their names in ROS."""
-OF_DEPTHS = frozenset({"R_FLOAT16", "R_FLOAT32", "FLOAT32"})
+DEPTH_FORMATS = frozenset({"R_FLOAT16", "R_FLOAT32", "FLOAT32"})
 """The formats of depth cameras in files for gz; they do not specify colours."""
-USUAL_ENCODING = "bgr8"
+DEFAULT_ENCODING = "bgr8"
 """For formats that are unknown."""
 _GREY = np.array([0.299, 0.587, 0.114], np.float32)
 _PLACES = 1 << 16
@@ -75,7 +75,7 @@ def fill_image(message: Any, colour: Pixels, encoding: str) -> None:
         for channel in range(3):  # an eighth of the time of reversing all channels at once
             pixels[:, :, channel] = colour[:, :, 2 - channel]
     elif encoding.startswith("bayer"):
-        pixels = _mosaic(colour, encoding.removeprefix("bayer_")[:4])
+        pixels = _bayer_mosaic(colour, encoding.removeprefix("bayer_")[:4])
     if encoding.endswith("16"):
         pixels = pixels.astype("<u2") * 257
     _fill(message, pixels, encoding)
@@ -106,7 +106,7 @@ def _fill(message: Any, pixels: Pixels, encoding: str) -> None:
     message.data = data.reshape(-1).view(np.uint8)
 
 
-def _mosaic(colour: Pixels, order: str) -> Pixels:
+def _bayer_mosaic(colour: Pixels, order: str) -> Pixels:
     """Return a Bayer mosaic: one colour per pixel, in the given order within two by two pixels."""
     mosaic = np.empty(colour.shape[:2], np.uint8)
     for place, letter in enumerate(order):

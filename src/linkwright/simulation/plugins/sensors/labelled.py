@@ -57,7 +57,7 @@ class Labels:
 
     def _labelled(self, names: list[str]) -> list[float]:
         known = dict(self._known())
-        return [float(_longest(known, part_of(name))) for name in names]
+        return [float(_label_of(known, part_of(name))) for name in names]
 
     def _numbered(self, names: list[str]) -> list[float]:
         labels = self._labelled(names)
@@ -92,7 +92,7 @@ def _written(plugins: tuple[Plugin, ...]) -> Iterator[int]:
             yield int(element.text()) % _LABELS
 
 
-def _longest(known: dict[str, int], part: str) -> int:
+def _label_of(known: dict[str, int], part: str) -> int:
     """Return the label of a visual or of its closest enclosing model; 0 if neither has a label."""
     name = part
     while name:

@@ -61,7 +61,7 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
 
         The frame of the message is the sensor's name.
         """
-        message = self._bare_scan(self.sensor.name)
+        message = self._empty_scan(self.sensor.name)
         message.ranges = scan.ranges.ravel().astype(np.float32)
         return message
 
@@ -75,12 +75,12 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
 
     def scan_message(self, frame: str, scan: Scan, least_intensity: float = 0.0) -> Any:
         """Return a LaserScan of the middle row of a scan; lower intensities become `least_intensity`."""
-        message, row = self._bare_scan(frame), self.lidar.vertical.count // 2
+        message, row = self._empty_scan(frame), self.lidar.vertical.count // 2
         message.ranges = scan.ranges[row].astype(np.float32)
         message.intensities = np.maximum(scan.intensities[row], least_intensity).astype(np.float32)
         return message
 
-    def _bare_scan(self, frame: str) -> Any:
+    def _empty_scan(self, frame: str) -> Any:
         """Return a LaserScan with angles and limits, but without ranges."""
         lidar, message = self.lidar, self.message(_SCAN, frame)
         message.angle_min, message.angle_max = float(lidar.horizontal.min_angle), float(lidar.horizontal.max_angle)
@@ -102,7 +102,7 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
         kept = np.isfinite(scan.ranges.ravel())
         return points[kept], np.maximum(intensities[kept], least_intensity)
 
-    def old_cloud(self, frame: str, scan: Scan, least_intensity: float = 0.0) -> Any:
+    def point_cloud_message(self, frame: str, scan: Scan, least_intensity: float = 0.0) -> Any:
         """Return the hits of a scan as ``sensor_msgs/msg/PointCloud``."""
         message = self.message("sensor_msgs/msg/PointCloud", frame)
         points, intensities = self.finite(scan, least_intensity)
@@ -177,7 +177,7 @@ class ClassicRaySensor(_OneLidar[RayParameters]):
         return message
 
     def _old_cloud(self, scan: Scan) -> Any:
-        return self.old_cloud(self._frame, scan, self.parameters.min_intensity)
+        return self.point_cloud_message(self._frame, scan, self.parameters.min_intensity)
 
     def _range(self, scan: Scan) -> Any:
         return self.range_message(self._frame, scan, self.parameters.radiation_type)
@@ -223,7 +223,7 @@ class OldBlockLaser(OldLaser):
 
     def output_message(self, frame: str, scan: Scan) -> Any:
         """Return a scan as a PointCloud."""
-        return self.old_cloud(frame, scan)
+        return self.point_cloud_message(frame, scan)
 
 
 @dataclass(frozen=True, kw_only=True)

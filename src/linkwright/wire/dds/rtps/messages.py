@@ -240,7 +240,7 @@ def data(reader: bytes, writer: bytes, number: int, payload: bytes | None, inlin
     return _submessage(_DATA, flags, head + inline + (payload or b""))
 
 
-def fragments_of(payload: bytes) -> int:
+def fragment_count(payload: bytes) -> int:
     """Return the number of fragments into which a payload is divided."""
     return (len(payload) + FRAGMENT - 1) // FRAGMENT
 

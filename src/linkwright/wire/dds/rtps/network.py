@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from linkwright.wire.dds.local_sockets import multicast_port
 from linkwright.wire.dds.rtps.values import Address
 from linkwright.wire.dds.rtps.writer import Packet
-from linkwright.wire.dds.settings import Range, Settings, most_participants, own_addresses
+from linkwright.wire.dds.settings import Range, Settings, max_participants, own_addresses
 
 _LOOPBACK = "127.0.0.1"
 _GROUP = "239.255.0.1"
@@ -49,13 +49,13 @@ class Places:
     only_here: bool
 
 
-def places_of(settings: Settings) -> Places:
+def addresses_from_settings(settings: Settings) -> Places:
     """Return the addresses that follow from the settings; see `docs/decisions/0011-dds.md`."""
     others = tuple(own_addresses()[:3])
     local = settings.range is Range.LOCALHOST and bool(settings.peers)
     machine = settings.range is Range.MACHINE or (settings.range is Range.LOCALHOST and not local)
     first = multicast_port(settings.domain_id) + _FIRST_UNICAST
-    most = most_participants(settings.domain_id)
+    most = max_participants(settings.domain_id)
     count = most if machine else min(most, _FEW)
     return Places(
         own=(_LOOPBACK,) if local or machine or not others else others,
@@ -89,7 +89,7 @@ class Network:
     """The class of its socket."""
 
     def __init__(self, settings: Settings) -> None:
-        self._places = places_of(settings)
+        self._places = addresses_from_settings(settings)
         self._group = (_GROUP, multicast_port(settings.domain_id))
         self._here = {_LOOPBACK, *own_addresses()}
         self.socket = self.SOCKET(socket.AF_INET, socket.SOCK_DGRAM)

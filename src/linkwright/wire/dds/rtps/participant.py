@@ -262,7 +262,7 @@ class RtpsParticipant:
 
     def _answer(self, packet: bytes, source: Address, calls: list[Callable[[], None]]) -> None:
         with self._lock:
-            packets = self._understand(packet, source, calls)
+            packets = self._process_packet(packet, source, calls)
         self._network.send(packets)
 
     def _due(self) -> float:
@@ -408,7 +408,7 @@ class RtpsParticipant:
 
     # --- incoming packets ---------------------------------------------------------------------------------------------
 
-    def _understand(self, packet: bytes, source: Address, calls: list[Callable[[], None]]) -> list[Packet]:
+    def _process_packet(self, packet: bytes, source: Address, calls: list[Callable[[], None]]) -> list[Packet]:
         """Process a packet; return the packets that answer it.
 
         Callbacks are appended to `calls`, because they must be called without holding the lock.
@@ -427,12 +427,12 @@ class RtpsParticipant:
                 elif peer is not None:
                     packets += self._on_submessage(submessage, calls)
                 else:
-                    packets += self._on_stranger(submessage, source)
+                    packets += self._on_unmatched_peer(submessage, source)
             except MalformedError:
                 break
         return packets
 
-    def _on_stranger(self, submessage: Submessage, source: Address) -> list[Packet]:
+    def _on_unmatched_peer(self, submessage: Submessage, source: Address) -> list[Packet]:
         """Answer a participant that is not matched that neither side lacks anything.
 
         After this answer, the participant stops repeating its messages.

@@ -18,7 +18,7 @@ _FIRST_REPEAT, _LAST_REPEAT = 0.05, 2.0
 """Seconds after which a silent writer is asked for its samples, and the limit to which that interval grows."""
 
 _MOST_MISSING = 256
-_FURTHEST = 100_000
+_MAX_AHEAD = 100_000
 """How far ahead of the next expected number a reader takes note of samples."""
 
 _LARGEST = 1 << 30
@@ -69,16 +69,16 @@ class _Writer:
     def add(self, number: int) -> None:
         self.later.add(number)
         self.incomplete.pop(number, None)
-        self.close_up()
+        self._advance_low()
 
     def start_at(self, number: int) -> None:
         if number > self.low:
             self.low = number
             self.later = {value for value in self.later if value >= number}
             self.incomplete = {each: part for each, part in self.incomplete.items() if each >= number}
-        self.close_up()
+        self._advance_low()
 
-    def close_up(self) -> None:
+    def _advance_low(self) -> None:
         while self.low in self.later:
             self.later.discard(self.low)
             self.low += 1
@@ -132,7 +132,7 @@ class Reader:
     def on_data(self, sample: Data) -> Data | None:
         """Handle a sample or fragment; return the sample if it is new and complete, otherwise None."""
         matched = self._writers.get(sample.writer)
-        if matched is None or matched.has(sample.number) or sample.number > max(matched.low, matched.last) + _FURTHEST:
+        if matched is None or matched.has(sample.number) or sample.number > max(matched.low, matched.last) + _MAX_AHEAD:
             return None
         complete: Data | None = sample
         if sample.first:
@@ -167,7 +167,7 @@ class Reader:
         if gap.start <= matched.low:
             matched.start_at(gap.base)
         else:
-            for number in range(gap.start, min(gap.base, gap.start + _FURTHEST)):
+            for number in range(gap.start, min(gap.base, gap.start + _MAX_AHEAD)):
                 matched.add(number)
         for number in gap.others:
             if not matched.has(number):

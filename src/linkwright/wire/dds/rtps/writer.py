@@ -12,7 +12,7 @@ from linkwright.wire.dds.rtps.messages import (
     NackFrag,
     data,
     data_fragment,
-    fragments_of,
+    fragment_count,
     gap,
     heartbeat,
     info_timestamp,
@@ -90,7 +90,7 @@ class Writer:
         matched = self._readers[reader] = _Reader(addresses, 1 if self._lasting else self._last + 1)
         if not self._lasting:
             return [self._packet(reader, matched, self._beat(reader, matched))]
-        return self._everything(reader, matched)
+        return self._history_packets(reader, matched)
 
     def unmatch(self, reader: bytes) -> None:
         """Remove a reader, to which nothing more is written."""
@@ -150,7 +150,7 @@ class Writer:
         matched, change = self._readers.get(nack.reader), self._changes.get(nack.number)
         if matched is None or change is None or change.payload is None or not change.is_for(nack.reader):
             return []
-        most = fragments_of(change.payload)
+        most = fragment_count(change.payload)
         fragments = [fragment for fragment in nack.missing if 1 <= fragment <= most]
         packets = [
             self._fragment(nack.reader, matched, nack.number, change, change.payload, fragment)
@@ -177,7 +177,7 @@ class Writer:
 
     # --- inside ------------------------------------------------------------------------------------------------------
 
-    def _everything(self, reader: bytes, matched: _Reader) -> list[Packet]:
+    def _history_packets(self, reader: bytes, matched: _Reader) -> list[Packet]:
         matched.due = time.monotonic() + _FIRST_REPEAT
         packets = [packet for number in sorted(self._changes) for packet in self._sample(reader, matched, number)]
         return packets or [self._packet(reader, matched, self._beat(reader, matched))]
@@ -189,7 +189,7 @@ class Writer:
         if not change.is_for(reader):
             yield self._packet(reader, matched, gap(entity, self.guid[PREFIX:], number, number + 1), beat)
         elif change.payload is not None and len(change.payload) > FRAGMENT:
-            for which in range(1, fragments_of(change.payload) + 1):
+            for which in range(1, fragment_count(change.payload) + 1):
                 yield self._fragment(reader, matched, number, change, change.payload, which)
             yield self._packet(reader, matched, beat)
         else:
