@@ -76,6 +76,16 @@ class Occurrence:
         return self.start + len(self.name)
 
 
+def kinds_of_reference(tag: str, attribute: str) -> tuple[NameKind, ...]:
+    """Return the kinds of names that an attribute may refer to; empty for none.
+
+    The ``name`` of a joint in a transmission or in ``<ros2_control>`` counts as well, and a material's.
+    """
+    if attribute == "name":
+        return {"joint": _JOINT, "material": (NameKind.MATERIAL,), "passive_joint": _JOINT}.get(tag, ())
+    return _REFERENCES.get((tag, attribute), ())
+
+
 def kinds_of_text(tag: str) -> tuple[NameKind, ...]:
     """Return the kinds of names that the text of an element may have, by the element's name; empty for none.
 

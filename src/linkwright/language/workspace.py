@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError
 from linkwright.language.definitions import NameDefinition, definitions_in
 from linkwright.language.includes import IncludeIndex, real
+from linkwright.language.mentions import FILES as MENTIONING_FILES
 from linkwright.lint.checking import Checker, UniqueFindings
 from linkwright.lint.contexts import Contexts
 from linkwright.lint.finding import Finding
 from linkwright.lint.folders import Examined, relevant_package_findings, reported
-from linkwright.lint.targets import DESCRIPTIONS, Targets
+from linkwright.lint.targets import DESCRIPTIONS, Targets, walk
 from linkwright.packages import PackageFinder, enclosing_package
 from linkwright.packages.manifest import MANIFEST
 from linkwright.xmltree import Overlay
@@ -72,6 +73,35 @@ class Workspace:
     def finder(self, file: Path) -> PackageFinder:
         """Return what finds packages for a file."""
         return self._checker.finder(file)
+
+    def text(self, file: Path, texts: Mapping[Path, str]) -> str | None:
+        """Return the text of a file, which may be open; None if the file cannot be read."""
+        if file in texts:
+            return texts[file]
+        try:
+            return decode(read_bytes(file), str(file))
+        except (OSError, LinkwrightError):
+            return None
+
+    def argument_values(self, entry: Path) -> list[Mapping[str, str]]:
+        """Return the argument sets of a description: its defaults, and those of the settings or of callers."""
+        return [{}, *self._checker.argument_values(entry, self.index.packages)]
+
+    def configuration_files(self, file: Path) -> list[Path]:
+        """Return the files of a file's package that may mention links and joints; empty if it is in no package."""
+        package = enclosing_package(file.parent)
+        if package is None:
+            return []
+        found, _ = walk(package[1], (*MENTIONING_FILES, ".srdf"))
+        return [real(path) for path in found]
+
+    def neighbours(self, file: Path, known: Container[Path]) -> list[Path]:
+        """Return the other descriptions in a file's package."""
+        package = enclosing_package(file.parent)
+        if package is None:
+            return []
+        folder = real(package[1])
+        return [other for other in self.index.files if other not in known and other.is_relative_to(folder)]
 
     def names(self, file: Path, texts: Mapping[Path, str]) -> list[NameDefinition]:
         """Return the names that a file, the descriptions that include it and their other files define.

@@ -165,6 +165,17 @@ class Checker:
         checked = examine_package(folder, settings, self.finder(folder / MANIFEST), overlay, contexts)
         return checked.diagnostics, trouble
 
+    def argument_values(self, file: Path, packages: Sequence[Path]) -> tuple[Mapping[str, str], ...]:
+        """Return the values with which a description is expanded: those of the settings, or else of its callers.
+
+        Args:
+            file: the description.
+            packages: the folders that are searched for callers.
+        """
+        settings, _ = self.settings(file)
+        callers = (found.values for found in self._argument_sets(file, packages) if found.is_complete)
+        return settings.arguments_of(file) or tuple(callers)
+
     def _argument_sets(self, file: Path, packages: Sequence[Path]) -> tuple[ArgumentSet, ...]:
         """Return the argument sets that callers pass to a file.
 

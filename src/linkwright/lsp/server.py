@@ -96,8 +96,12 @@ class LinkwrightServer(LanguageServer):
         """Return the names that the description of a file defines, once the folders have been searched."""
         if self.project is None:
             return []
-        await self._is_indexed.wait()
+        await self.when_indexed()
         return self.project.names(real(path), self.texts())
+
+    async def when_indexed(self) -> None:
+        """Wait until the folders have been searched."""
+        await self._is_indexed.wait()
 
     def positions(self, path: Path) -> TextPositions | None:
         """Return the positions of a file's text, that of the editor if it is open; None if it cannot be read."""
@@ -132,7 +136,7 @@ class LinkwrightServer(LanguageServer):
 
     async def _check_changes(self, project: Workspace) -> None:
         """Check files as they change, the newest change first; a subject that still waits is checked once."""
-        await self._in_thread(project.index.refresh)
+        await self.in_thread(project.index.refresh)
         self._is_indexed.set()
         pending: dict[Path, set[Path]] = {}
         while True:
@@ -170,12 +174,13 @@ class LinkwrightServer(LanguageServer):
     async def _attempt(self, work: Callable[[], T], about: Path) -> T | None:
         """Return the result of work in the thread; a fault of ours is logged, and the server continues."""
         try:
-            return await self._in_thread(work)
+            return await self.in_thread(work)
         except Exception:  # noqa: BLE001 - the editor continues to work, and the log has the reason
             _log.exception("The check of '%s' failed", about)
             return None
 
-    async def _in_thread(self, work: Callable[[], T]) -> T:
+    async def in_thread(self, work: Callable[[], T]) -> T:
+        """Return the result of work in the thread of the checks, which is the only one that reads the workspace."""
         return await asyncio.get_running_loop().run_in_executor(self._thread, work)
 
 

@@ -1,0 +1,379 @@
+"""Renaming of macros, parameters, properties, arguments, links, joints and materials, proved by expansions.
+
+The edits are tried on the descriptions that include the file, with each set of arguments that their callers pass. A
+macro, parameter, property or argument may be renamed if all expansions stay equal. A link, joint or material may be
+renamed if the expansions differ in names alone, and every name that changes has one new name wherever it occurs.
+"""
+
+from __future__ import annotations
+
+import keyword
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, SourceText, Span, phrase, term
+from linkwright.language.definitions import NameKind
+from linkwright.language.mentions import Mention, mentions_in
+from linkwright.language.occurrences import Occurrence, kinds_of_reference, kinds_of_text, occurrences_in
+from linkwright.language.workspace import Workspace
+from linkwright.lint.targets import DESCRIPTIONS
+from linkwright.xacro import Expansion, expand
+from linkwright.xmltree import Element, Overlay, Text
+from linkwright.xmltree.positions import attribute_value_range
+
+_OF_ROBOT = (NameKind.LINK, NameKind.JOINT, NameKind.MATERIAL)
+_NAME = re.compile(r"[^\s<>&\"']+")
+_MOST_ROUNDS = 4
+"""How often references that still have an old name are searched."""
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Edit:
+    """A text that replaces the characters `start` to `end` (exclusive) of a file."""
+
+    file: Path
+    start: int
+    end: int
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Renaming:
+    """A proved renaming.
+
+    Attributes:
+        edits: the edits, in the order of files and offsets.
+        names: the names of links, joints and materials that change, old name -> new name.
+        unchanged: mentions of these names that are not certain to mean them; the edits leave them unchanged.
+    """
+
+    edits: tuple[Edit, ...]
+    names: Mapping[str, str] = field(default_factory=dict)
+    unchanged: tuple[Mention, ...] = ()
+
+
+def name_at(text: str, file: Path, offset: int) -> Occurrence | None:
+    """Return the name at an offset that can be renamed; None if there is none."""
+    found = [name for name in occurrences_in(text, file) if name.start <= offset <= name.end]
+    return min(found, key=lambda name: (name.end - name.start, not name.is_definition), default=None)
+
+
+def references(project: Workspace, texts: Mapping[Path, str], name: Occurrence) -> list[Occurrence]:
+    """Return the places in a description that mean the same name, in all of its files.
+
+    Args:
+        project: the workspace.
+        texts: the texts of the open files.
+        name: the name.
+    """
+    return [
+        other
+        for file in project.index.related(name.file, texts)
+        for other in occurrences_in(project.text(file, texts) or "", file)
+        if _is_same(other, name)
+    ]
+
+
+def rename(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> Renaming:
+    """Return the edits that rename something.
+
+    Args:
+        project: the workspace.
+        texts: the texts of the open files.
+        name: the name, as `name_at` returns it.
+        new: the new name, as it is to be written at the place of the old one.
+
+    Raises:
+        LinkwrightError: LANG102, the new name is not valid; LANG103, it exists; LANG104, the edits cannot be proved.
+    """
+    _check_new_name(name, new)
+    seeds = references(project, texts, name)
+    if not any(seed.is_definition for seed in seeds) and name.kind not in _OF_ROBOT:
+        raise _unproved(phrase("'{name}' is not defined in the files of the workspace", name=name.name), name)
+    taken = next((other for other in references(project, texts, _named(name, new)) if other.is_definition), None)
+    if taken is not None:
+        message = phrase("{kind} '{name}' already exists", kind=term(name.kind.value), name=new)
+        raise LinkwrightError(Diagnostic("LANG103", message, _span(project, texts, taken)))
+    proof = _Proof(project, texts, name)
+    proof.edits.update(Edit(seed.file, seed.start, seed.end, new) for seed in seeds)
+    if name.kind not in _OF_ROBOT:
+        if name.kind is NameKind.ARGUMENT and proof.is_passed():
+            message = phrase("callers pass the argument '{name}', and their files cannot be edited yet", name=name.name)
+            raise _unproved(message, name)
+        proof.check_equal(name)
+        return Renaming(tuple(sorted(proof.edits)))
+    names = proof.follow(name)
+    return Renaming(tuple(sorted(proof.edits)), names, proof.unchanged)
+
+
+def _is_same(other: Occurrence, name: Occurrence) -> bool:
+    if (other.kind, other.name) != (name.kind, name.name):
+        return False
+    if name.kind is NameKind.PARAMETER:
+        return other.owner == name.owner
+    is_template = name.kind in _OF_ROBOT and "$" in name.name
+    return not is_template or (other.file, other.owner) == (name.file, name.owner)
+
+
+def _named(name: Occurrence, new: str) -> Occurrence:
+    return Occurrence(name.kind, new, name.file, name.start, name.is_definition, name.owner)
+
+
+def _check_new_name(name: Occurrence, new: str) -> None:
+    is_variable = name.kind not in _OF_ROBOT
+    is_valid = new.isidentifier() and not keyword.iskeyword(new) if is_variable else bool(new.strip())
+    if name.kind is NameKind.MACRO or (name.kind in _OF_ROBOT and "$" not in new):
+        is_valid = _NAME.fullmatch(new) is not None
+    if not is_valid:
+        message = phrase("'{new}' is not a valid name of a {kind}", new=new, kind=term(name.kind.value))
+        hint = phrase("use letters, digits and underscores, and begin with a letter")
+        raise LinkwrightError(Diagnostic("LANG102", message, hint=hint))
+
+
+def _unproved(message: Phrase, name: Occurrence, span: Span | None = None) -> LinkwrightError:
+    return LinkwrightError(
+        Diagnostic("LANG104", phrase("'{name}' is not renamed: {why}", name=name.name, why=message), span)
+    )
+
+
+def _span(project: Workspace, texts: Mapping[Path, str], name: Occurrence) -> Span:
+    return SourceText(str(name.file), project.text(name.file, texts) or "").span(name.start, name.end)
+
+
+class _Proof:
+    """Edits, and the expansions of a description with and without them.
+
+    Attributes:
+        edits: the edits so far.
+        unchanged: mentions of changed names that are not certain.
+    """
+
+    def __init__(self, project: Workspace, texts: Mapping[Path, str], name: Occurrence) -> None:
+        self.edits: set[Edit] = set()
+        self.unchanged: tuple[Mention, ...] = ()
+        self._project, self._texts, self._name = project, texts, name
+        self._before: list[tuple[Path, Mapping[str, str], Element, str]] = []
+        self._error: LinkwrightError | None = None
+        self._entries: set[Path] = set()
+        self._add_entries(name.file)
+
+    def _add_entries(self, file: Path) -> None:
+        """Expand the descriptions that include a file, without the edits."""
+        for entry in self._project.index.entries(file, self._texts):
+            if entry in self._entries:
+                continue
+            self._entries.add(entry)
+            for values in self._project.argument_values(entry):
+                try:
+                    expansion = self._expand(entry, values, self._texts)
+                except LinkwrightError as error:  # noqa: PERF203 - each may fail for itself
+                    self._error = error
+                else:
+                    self._before.append((entry, values, expansion.document.root, str(expansion)))
+
+    def _expand(self, entry: Path, values: Mapping[str, str], texts: Mapping[Path, str]) -> Expansion:
+        overlay = Overlay({str(path): text for path, text in texts.items()})
+        return expand(entry, values, packages=self._project.finder(entry), overlay=overlay)
+
+    def is_passed(self) -> bool:
+        """Return whether a caller passes the argument that is renamed."""
+        return any(self._name.name in values for _, values, _, _ in self._before)
+
+    def _edited(self) -> dict[Path, str]:
+        """Return the texts of the open and the edited files, with the edits."""
+        texts = dict(self._texts)
+        for file in {edit.file for edit in self.edits}:
+            text = self._project.text(file, self._texts) or ""
+            for edit in sorted((edit for edit in self.edits if edit.file == file), reverse=True):
+                text = text[: edit.start] + edit.text + text[edit.end :]
+            texts[file] = text
+        return texts
+
+    def _pairs(self) -> Iterator[tuple[Path, Element, Element, str, str]]:
+        """Yield each description before and after the edits: the file, the root elements and the texts."""
+        for file in sorted({edit.file for edit in self.edits}):
+            if file.name.endswith(DESCRIPTIONS):
+                self._add_entries(file)
+        if not self._before:
+            reason = self._error.diagnostics[0].message if self._error else phrase("no description includes its file")
+            raise _unproved(phrase("no expansion can be compared: {reason}", reason=reason), self._name)
+        texts = self._edited()
+        for entry, values, root, text in self._before:
+            try:
+                after = self._expand(entry, values, texts)
+            except LinkwrightError as error:
+                first = error.diagnostics[0]
+                raise _unproved(
+                    phrase("the new name causes this error: {why}", why=first.message), self._name, first.span
+                ) from None
+            yield entry, root, after.document.root, text, str(after)
+
+    def check_equal(self, name: Occurrence) -> None:
+        """Compare the expansions, which must be equal.
+
+        Raises:
+            LinkwrightError: LANG104, they differ.
+        """
+        for entry, _, _, before, after in self._pairs():
+            if before != after:
+                raise _unproved(phrase("the robot of '{file}' would change", file=entry.name), name)
+
+    def follow(self, name: Occurrence) -> dict[str, str]:
+        """Extend the edits until all references have their new names, and return the names that change.
+
+        Raises:
+            LinkwrightError: LANG104, the expansions differ in more than names, or a reference cannot be edited.
+        """
+        for _ in range(_MOST_ROUNDS):
+            names: dict[tuple[NameKind, str], str] = {}
+            trees = [(before, after) for _, before, after, _, _ in self._pairs()]
+            for before, after in trees:
+                for kind, old, new in _changed_definitions(before, after, self._name):
+                    if names.setdefault((kind, old), new) != new:
+                        message = phrase(
+                            "'{old}' would have two new names, '{first}' and '{second}'",
+                            old=old,
+                            first=names[kind, old],
+                            second=new,
+                        )
+                        raise _unproved(message, name)
+            if not names:
+                raise _unproved(phrase("no link, joint or material takes its name from this place"), name)
+            more = {edit for before, after in trees for edit in self._stale(before, after, names)}
+            more |= self._elsewhere(names)
+            if more <= self.edits:
+                self._check_names(trees, names)
+                return {old: new for (_, old), new in names.items()}
+            self.edits |= more
+        raise _unproved(phrase("some references keep the old name"), name)
+
+    def _stale(self, before: Element, after: Element, names: Mapping[tuple[NameKind, str], str]) -> Iterator[Edit]:
+        """Yield the edits for references in an expansion that still have an old name."""
+        for old, new in zip(before.walk(), after.walk(), strict=False):
+            for kinds, key in _references_of(new):
+                value = new.attributes.get(key, "") if key else new.text().strip()
+                for kind in kinds:
+                    wanted = names.get((kind, value))
+                    if wanted is not None and old.tag == new.tag and new.source is not None:
+                        yield self._edit_of(new, key, value, wanted)
+                        break
+
+    def _edit_of(self, element: Element, key: str, value: str, wanted: str) -> Edit:
+        assert element.source is not None
+        # Offsets are those of the edited text: find the place by the text before the edits.
+        source = element.source
+        place = attribute_value_range(source.text, element.offset, key) if key else _text_range(element)
+        written = "" if place is None else source.text[place[0] : place[1]]
+        file = Path(source.name)
+        if place is None or written != value:
+            message = phrase("'{value}' is computed from '{written}'", value=value, written=written or element.tag)
+            raise _unproved(message, self._name, element.attribute_span(key) if key else element.span())
+        start = place[0] - self._shift(file, place[0])
+        return Edit(file, start, start + len(value), wanted)
+
+    def _shift(self, file: Path, offset: int) -> int:
+        """Return how far the edits before an offset of the edited text have moved it."""
+        shift = 0
+        for edit in sorted(edit for edit in self.edits if edit.file == file):
+            if edit.start + shift < offset:
+                shift += len(edit.text) - (edit.end - edit.start)
+        return shift
+
+    def _elsewhere(self, names: Mapping[tuple[NameKind, str], str]) -> set[Edit]:
+        """Return the edits of the other files: SRDF, YAML, RViz configurations, launch files."""
+        olds = frozenset(old for _, old in names)
+        found: set[Edit] = set()
+        unchanged: list[Mention] = []
+        inside = {*self._project.index.related(self._name.file, self._texts)}
+        for use in self._uses_in(inside, names):
+            if not use.is_definition:
+                found.add(Edit(use.file, use.start, use.end, names[use.kind, use.name]))
+        others = {use.name for use in self._uses_in(self._project.neighbours(self._name.file, inside), names)}
+        for file in self._project.configuration_files(self._name.file):
+            text = self._project.text(file, self._texts) or ""
+            if ".srdf" in file.name:
+                uses = [use for use in occurrences_in(text, file) if (use.kind, use.name) in names]
+                mentions = [Mention(use.name, file, use.start, (use.kind,)) for use in uses]
+            else:
+                mentions = [*mentions_in(text, file, olds)]
+            for mention in mentions:
+                new = next((names[kind, mention.name] for kind in mention.kinds if (kind, mention.name) in names), None)
+                if new is not None and mention.name not in others:
+                    found.add(Edit(file, mention.start, mention.end, new))
+                elif new is not None or not mention.kinds:
+                    unchanged.append(mention)
+        self.unchanged = tuple(unchanged)
+        return found
+
+    def _uses_in(self, files: Iterable[Path], names: Mapping[tuple[NameKind, str], str]) -> Iterator[Occurrence]:
+        """Yield the literal definitions and uses of names in files, also those that no expansion reaches."""
+        for file in files:
+            for use in occurrences_in(self._project.text(file, self._texts) or "", file):
+                if (use.kind, use.name) in names:
+                    yield use
+
+    def _check_names(self, trees: Sequence[tuple[Element, Element]], names: Mapping[tuple[NameKind, str], str]) -> None:
+        """Check that the expansions differ in the names alone."""
+        allowed = {*((old, new) for (_, old), new in names.items())}
+        for before, after in trees:
+            olds, news = _defined(before), _defined(after)
+            for old, new in _differences(before, after, self._name):
+                if (old, new) not in allowed or (old in olds and new not in news):
+                    raise _unproved(phrase("'{old}' would become '{new}'", old=old, new=new), self._name)
+            for kind in _OF_ROBOT[:2]:
+                defined = [element.attributes.get("name") for element in after.elements(kind.value)]
+                if len(defined) != len(set(defined)):
+                    raise _unproved(phrase("two {kind}s would have the same name", kind=term(kind.value)), self._name)
+
+
+def _changed_definitions(before: Element, after: Element, name: Occurrence) -> Iterator[tuple[NameKind, str, str]]:
+    for tag, kind in (("link", NameKind.LINK), ("joint", NameKind.JOINT), ("material", NameKind.MATERIAL)):
+        pairs = list(zip(before.walk(), after.walk(), strict=False)) if tag == "material" else []
+        olds, news = [*before.elements(tag)], [*after.elements(tag)]
+        if len(olds) != len(news):
+            raise _unproved(phrase("the robot would have another number of {kind}s", kind=term(kind.value)), name)
+        pairs = pairs or [*zip(olds, news, strict=True)]
+        for old, new in pairs:
+            if old.tag == new.tag == tag and old.attributes.get("name") != new.attributes.get("name"):
+                yield kind, old.attributes.get("name", ""), new.attributes.get("name", "")
+
+
+def _references_of(element: Element) -> Iterator[tuple[tuple[NameKind, ...], str]]:
+    """Yield the attributes of an element (or an empty name for its text) that name something, with the kinds."""
+    for key in element.attributes:
+        kinds = kinds_of_reference(element.tag, key)
+        if kinds:
+            yield kinds, key
+    kinds = kinds_of_text(element.tag)
+    if kinds and element.text().strip():
+        yield kinds, ""
+
+
+def _text_range(element: Element) -> tuple[int, int] | None:
+    for child in element.children:
+        if isinstance(child, Text) and child.data.strip() and child.source is element.source:
+            start = child.offset + len(child.data) - len(child.data.lstrip())
+            return start, start + len(child.data.strip())
+    return None
+
+
+def _defined(root: Element) -> set[str]:
+    """Return the names of the links and joints of a robot."""
+    return {element.attributes.get("name", "") for tag in ("link", "joint") for element in root.elements(tag)}
+
+
+def _differences(before: Element, after: Element, name: Occurrence) -> Iterator[tuple[str, str]]:
+    """Yield the attribute values and texts that differ, each before and after."""
+    olds, news = [*before.walk()], [*after.walk()]
+    if [old.tag for old in olds] != [new.tag for new in news]:
+        raise _unproved(phrase("the robot would have other elements"), name)
+    for old, new in zip(olds, news, strict=True):
+        if old.attributes.keys() != new.attributes.keys():
+            raise _unproved(phrase("<{tag}> would have other attributes", tag=old.tag), name)
+        for key, value in old.attributes.items():
+            if new.attributes[key] != value:
+                yield value, new.attributes[key]
+        if old.text() != new.text():
+            yield old.text().strip(), new.text().strip()

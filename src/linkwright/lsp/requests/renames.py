@@ -1,0 +1,96 @@
+"""References and renaming."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from itertools import groupby
+from pathlib import Path
+
+from lsprotocol import types
+from pygls.exceptions import JsonRpcException
+
+from linkwright.diagnostics import LinkwrightError, joined, phrase
+from linkwright.diagnostics.translation import localized
+from linkwright.language.includes import real
+from linkwright.language.mentions import Mention
+from linkwright.language.occurrences import Occurrence
+from linkwright.language.renaming import Edit, name_at, references, rename
+from linkwright.lsp.server import LinkwrightServer
+
+_MOST_SHOWN = 5
+
+
+def document_edits(server: LinkwrightServer, edits: Iterable[Edit]) -> types.WorkspaceEdit:
+    """Return edits for the editor, with the versions of the open files: it applies all or none."""
+    changes: list[types.TextDocumentEdit] = []
+    for file, own in groupby(sorted(edits), key=lambda edit: edit.file):
+        positions = server.positions(file)
+        if positions is not None:
+            uri = server.uri_of(file)
+            document = server.workspace.text_documents.get(uri)
+            version = None if document is None else document.version
+            changes.append(
+                types.TextDocumentEdit(
+                    types.OptionalVersionedTextDocumentIdentifier(uri, version),
+                    [types.TextEdit(positions.range(edit.start, edit.end), edit.text) for edit in own],
+                )
+            )
+    return types.WorkspaceEdit(document_changes=changes)
+
+
+def _unchanged(mentions: Iterable[Mention]) -> str:
+    places = [f"{mention.file.name} ({mention.name})" for mention in dict.fromkeys(mentions)]
+    shown = joined(places[:_MOST_SHOWN], ", ")
+    return localized(phrase("not renamed, because the file does not tell what is meant: {places}", places=shown))
+
+
+def add_requests(server: LinkwrightServer) -> None:
+    """Add the requests of this module to a server."""
+
+    def place(
+        server: LinkwrightServer, document: types.TextDocumentIdentifier, position: types.Position
+    ) -> tuple[Mapping[Path, str], Occurrence | None]:
+        path, positions = server.text(document)
+        if positions is None or server.project is None:
+            return {}, None
+        return server.texts(), name_at(positions.text, real(path), positions.offset(position))
+
+    @server.feature(types.TEXT_DOCUMENT_REFERENCES)
+    async def references_request(server: LinkwrightServer, asked: types.ReferenceParams) -> list[types.Location] | None:
+        texts, name = place(server, asked.text_document, asked.position)
+        if name is None or server.project is None:
+            return None
+        await server.when_indexed()
+        found = []
+        for other in references(server.project, texts, name):
+            positions = server.positions(other.file)
+            if positions is not None and (asked.context.include_declaration or not other.is_definition):
+                found.append(types.Location(server.uri_of(other.file), positions.range(other.start, other.end)))
+        return found
+
+    @server.feature(types.TEXT_DOCUMENT_PREPARE_RENAME)
+    def prepare_rename_request(
+        server: LinkwrightServer, asked: types.PrepareRenameParams
+    ) -> types.PrepareRenamePlaceholder | None:
+        _, name = place(server, asked.text_document, asked.position)
+        positions = None if name is None else server.positions(name.file)
+        if name is None or positions is None:
+            return None
+        return types.PrepareRenamePlaceholder(positions.range(name.start, name.end), name.name)
+
+    @server.feature(types.TEXT_DOCUMENT_RENAME, types.RenameOptions(prepare_provider=True))
+    async def rename_request(server: LinkwrightServer, asked: types.RenameParams) -> types.WorkspaceEdit | None:
+        texts, name = place(server, asked.text_document, asked.position)
+        project = server.project
+        if name is None or project is None:
+            return None
+        await server.when_indexed()
+        try:
+            renaming = await server.in_thread(lambda: rename(project, texts, name, asked.new_name))
+        except LinkwrightError as error:
+            message = "\n".join(localized(diagnostic.message) for diagnostic in error.diagnostics)
+            raise JsonRpcException(message, code=int(types.LSPErrorCodes.RequestFailed)) from None
+        if renaming.unchanged:
+            shown = types.ShowMessageParams(types.MessageType.Info, _unchanged(renaming.unchanged))
+            server.window_show_message(shown)
+        return document_edits(server, renaming.edits)

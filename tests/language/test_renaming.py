@@ -1,0 +1,186 @@
+"""Renaming: what follows, what is left alone, and what is refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.language.renaming import Renaming, name_at, references, rename
+from linkwright.language.workspace import Workspace
+from linkwright.xacro import expand
+
+MAIN = """<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:include filename="parts.xacro"/>
+  <xacro:property name="reach" value="0.4"/>
+  <link name="base"/>
+  <xacro:bar name="upper" length="${2 * reach}"/>
+  <xacro:if value="false"><joint name="spare" type="fixed"><parent link="base"/><child link="upper"/></joint></xacro:if>
+  <gazebo reference="base"><plugin name="p"><base_frame>base</base_frame><topic>base</topic></plugin></gazebo>
+</robot>
+"""
+PARTS = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:macro name="bar" params="name length">
+    <link name="${name}"><visual><geometry><sphere radius="${length}"/></geometry></visual></link>
+    <joint name="${name}_joint" type="continuous">
+      <parent link="base"/>
+      <child link="${name}"/>
+    </joint>
+  </xacro:macro>
+</robot>
+"""
+YAML = """controller:
+  ros__parameters:
+    joints: ["upper_joint"]
+    base_frame_id: base
+    motto: base
+"""
+RVIZ = "Visualization Manager:\n  Global Options:\n    Fixed Frame: base\n"
+SRDF = '<robot name="arm"><group name="g"><joint name="upper_joint"/><link name="base"/></group></robot>'
+LAUNCH = "arguments = ['--frame-id', 'map', '--child-frame-id', 'base']\nname = 'base'\n"
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    files = {
+        "package.xml": "<package format='3'><name>arm</name></package>",
+        "urdf/arm.urdf.xacro": MAIN,
+        "urdf/parts.xacro": PARTS,
+        "config/arm.yaml": YAML,
+        "config/arm.rviz": RVIZ,
+        "config/arm.srdf": SRDF,
+        "launch/arm.launch.py": LAUNCH,
+    }
+    for name, text in files.items():
+        path = tmp_path / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+    return tmp_path.resolve()
+
+
+class Package:
+    """A workspace with one package, and renamings in it.
+
+    Args:
+        folder: the package.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.workspace = Workspace([folder])
+        self.workspace.index.refresh()
+
+    def name(self, file: str, before: str):
+        """Return the name that follows a text in a file."""
+        path = self.folder / file
+        text = path.read_text(encoding="utf-8")
+        found = name_at(text, path, text.index(before) + len(before) + 1)
+        assert found is not None
+        return found
+
+    def rename(self, file: str, before: str, new: str) -> Renaming:
+        """Rename the name that follows a text in a file."""
+        return rename(self.workspace, {}, self.name(file, before), new)
+
+    def apply(self, renaming: Renaming) -> dict[str, str]:
+        """Write the edits, and return the new texts of the edited files by their names."""
+        found = {}
+        for file in {edit.file for edit in renaming.edits}:
+            text = file.read_text(encoding="utf-8")
+            for edit in sorted((edit for edit in renaming.edits if edit.file == file), reverse=True):
+                text = text[: edit.start] + edit.text + text[edit.end :]
+            file.write_text(text, encoding="utf-8")
+            found[file.name] = text
+        return found
+
+
+@pytest.fixture
+def package(folder: Path) -> Package:
+    return Package(folder)
+
+
+@pytest.mark.parametrize(
+    ("file", "before", "new", "changed"),
+    [
+        (
+            "urdf/parts.xacro",
+            'macro name="',
+            "beam",
+            {"arm.urdf.xacro": "<xacro:beam name", "parts.xacro": 'name="beam" params'},
+        ),
+        ("urdf/parts.xacro", 'params="name ', "size", {"arm.urdf.xacro": "size=", "parts.xacro": '"${size}"'}),
+        ("urdf/arm.urdf.xacro", "${2 * ", "extent", {"arm.urdf.xacro": "${2 * extent}"}),
+    ],
+)
+def test_what_only_xacro_knows_leaves_the_robot_equal(package: Package, file, before, new, changed):
+    main = package.folder / "urdf" / "arm.urdf.xacro"
+    robot = str(expand(main))
+    renaming = package.rename(file, before, new)
+    texts = package.apply(renaming)
+    assert texts.keys() == changed.keys()
+    assert all(part in texts[name] for name, part in changed.items())
+    assert str(expand(main)) == robot
+
+
+def test_a_link_is_renamed_wherever_it_is_certain(package: Package):
+    renaming = package.rename("urdf/arm.urdf.xacro", '<link name="', "trunk")
+    texts = package.apply(renaming)
+    assert renaming.names == {"base": "trunk"}
+    assert texts["arm.urdf.xacro"] == MAIN.replace('link name="base"', 'link name="trunk"').replace(
+        'link="base"', 'link="trunk"'
+    ).replace('reference="base"', 'reference="trunk"').replace("<base_frame>base<", "<base_frame>trunk<")
+    assert texts["parts.xacro"] == PARTS.replace("base", "trunk")
+    assert texts["arm.yaml"] == YAML.replace("base_frame_id: base", "base_frame_id: trunk")
+    assert texts["arm.rviz"] == RVIZ.replace("base", "trunk")
+    assert texts["arm.srdf"] == SRDF.replace("base", "trunk")
+    assert texts["arm.launch.py"] == LAUNCH.replace("'--child-frame-id', 'base'", "'--child-frame-id', 'trunk'")
+    assert sorted(mention.file.name for mention in renaming.unchanged) == ["arm.launch.py", "arm.yaml"]
+
+
+def test_a_composed_name_changes_every_name_that_it_makes(package: Package):
+    renaming = package.rename("urdf/parts.xacro", '<joint name="${name}', "${name}_axle")
+    texts = package.apply(renaming)
+    assert renaming.names == {"upper_joint": "upper_axle"}
+    assert 'joint name="${name}_axle"' in texts["parts.xacro"]
+    assert "upper_axle" in texts["arm.yaml"]
+    assert "upper_axle" in texts["arm.srdf"]
+
+
+def test_a_file_of_another_robot_with_the_same_name_is_left(package: Package):
+    (package.folder / "urdf" / "other.urdf").write_text('<robot name="other"><link name="base"/></robot>')
+    renaming = Package(package.folder).rename("urdf/arm.urdf.xacro", '<link name="', "trunk")
+    assert {edit.file.name for edit in renaming.edits} == {"arm.urdf.xacro", "parts.xacro"}
+    assert {mention.file.name for mention in renaming.unchanged} == {
+        "arm.yaml",
+        "arm.rviz",
+        "arm.srdf",
+        "arm.launch.py",
+    }
+
+
+@pytest.mark.parametrize(
+    ("file", "before", "new", "code"),
+    [
+        ("urdf/arm.urdf.xacro", '<link name="', "two words", "LANG102"),
+        ("urdf/arm.urdf.xacro", "${2 * ", "2nd", "LANG102"),
+        ("urdf/arm.urdf.xacro", "${2 * ", "lambda", "LANG102"),
+        ("urdf/parts.xacro", 'params="name ', "name", "LANG103"),
+        ("urdf/arm.urdf.xacro", '<link name="', "upper", "LANG104"),
+        ("urdf/parts.xacro", '<joint name="$', "fixed_name", "LANG104"),
+    ],
+)
+def test_what_cannot_be_done_or_proved_is_refused(package: Package, file, before, new, code):
+    if new == "fixed_name":  # two calls would have one name
+        main = package.folder / "urdf" / "arm.urdf.xacro"
+        main.write_text(MAIN.replace("  <xacro:if", '  <xacro:bar name="lower" length="1"/>\n  <xacro:if'))
+        before = '<joint name="${name}'
+    with pytest.raises(LinkwrightError) as raised:
+        package.rename(file, before, new)
+    assert raised.value.diagnostics[0].code == code
+
+
+def test_references_are_those_of_the_macro_s_own_parameter(package: Package):
+    name = package.name("urdf/parts.xacro", 'params="name ')
+    found = [(use.file.name, use.is_definition) for use in references(package.workspace, {}, name)]
+    assert sorted(found) == [("arm.urdf.xacro", False), ("parts.xacro", False), ("parts.xacro", True)]

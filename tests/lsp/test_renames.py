@@ -1,0 +1,45 @@
+"""References and renaming, through the protocol."""
+
+from __future__ import annotations
+
+import pytest
+from lsprotocol import types
+from pygls.exceptions import JsonRpcException
+
+from tests.lsp.conftest import MAIN
+
+FILE = "urdf/arm.urdf.xacro"
+
+
+def at(text: str) -> types.Position:
+    """Return the position in the middle of a text in the main file."""
+    offset = MAIN.index(text) + len(text)
+    return types.Position(MAIN.count("\n", 0, offset), offset - MAIN.rfind("\n", 0, offset) - 1)
+
+
+async def test_references_are_found_in_all_files(editor):
+    editor.open(FILE)
+    asked = types.ReferenceParams(types.ReferenceContext(True), editor.document(FILE), at('<link name="b'))
+    found = await editor.client.text_document_references_async(asked)
+    assert sorted(place.uri.rpartition("/")[2] for place in found) == ["arm.urdf.xacro", "parts.xacro"]
+
+
+async def test_a_rename_edits_open_files_with_their_versions(editor):
+    editor.open(FILE)
+    document, position = editor.document(FILE), at('<link name="b')
+    prepared = await editor.client.text_document_prepare_rename_async(types.PrepareRenameParams(document, position))
+    assert prepared.placeholder == "base"
+    edit = await editor.client.text_document_rename_async(types.RenameParams(document, position, "trunk"))
+    changes = {change.text_document.uri.rpartition("/")[2]: change for change in edit.document_changes}
+    assert changes.keys() == {"arm.urdf.xacro", "parts.xacro"}
+    assert changes["arm.urdf.xacro"].text_document.version == 1
+    assert changes["parts.xacro"].text_document.version is None
+    assert {text.new_text for change in changes.values() for text in change.edits} == {"trunk"}
+
+
+async def test_a_rename_that_would_join_two_links_is_refused_with_the_reason(editor):
+    editor.open(FILE)
+    with pytest.raises(JsonRpcException, match="two links would have the same name"):
+        await editor.client.text_document_rename_async(
+            types.RenameParams(editor.document(FILE), at('<link name="b'), "upper")
+        )
