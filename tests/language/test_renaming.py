@@ -159,6 +159,43 @@ def test_a_file_of_another_robot_with_the_same_name_is_left(package: Package):
     }
 
 
+def test_an_argument_is_renamed_in_the_launch_file_that_passes_it(package: Package):
+    main = package.folder / "urdf" / "arm.urdf.xacro"
+    declared = '  <xacro:arg name="size" default="1"/>\n  <link'
+    main.write_text(MAIN.replace('value="0.4"', 'value="$(arg size)"').replace("  <link", declared, 1))
+    (package.folder / "launch" / "arm.launch.py").write_text(
+        "from launch.substitutions import Command, PathJoinSubstitution\n"
+        "from launch_ros.substitutions import FindPackageShare\n"
+        "command = Command([\n"
+        "    'xacro ', PathJoinSubstitution([FindPackageShare('arm'), 'urdf', 'arm.urdf.xacro']),\n"
+        "    ' size:=2 other_size:=3',\n"
+        "])\n"
+    )
+    texts = package.apply(Package(package.folder).rename("urdf/arm.urdf.xacro", '<xacro:arg name="', "reach_scale"))
+    assert "' reach_scale:=2 other_size:=3'" in texts["arm.launch.py"]
+    assert 'value="$(arg reach_scale)"' in texts["arm.urdf.xacro"]
+
+
+def test_a_name_that_a_call_passes_on_is_renamed_in_the_call(package: Package):
+    main = package.folder / "urdf" / "arm.urdf.xacro"
+    main.write_text(MAIN.replace('length="${2 * reach}"', 'length="1" parent="base"'))
+    parts = package.folder / "urdf" / "parts.xacro"
+    parts.write_text(PARTS.replace("name length", "name length parent").replace('link="base"', 'link="${parent}"'))
+    texts = package.apply(package.rename("urdf/arm.urdf.xacro", '<link name="', "trunk"))
+    assert 'parent="trunk"' in texts["arm.urdf.xacro"]
+    assert "parts.xacro" not in texts
+
+
+def test_a_computed_reference_is_refused_with_its_place(package: Package):
+    main = package.folder / "urdf" / "arm.urdf.xacro"
+    main.write_text(MAIN.replace("  <link", '  <xacro:property name="b" value="ba"/>\n  <link', 1))
+    parts = package.folder / "urdf" / "parts.xacro"
+    parts.write_text(PARTS.replace('link="base"', 'link="${b}se"'))
+    with pytest.raises(LinkwrightError, match="'base' is computed from") as raised:
+        package.rename("urdf/arm.urdf.xacro", '<link name="', "trunk")
+    assert raised.value.diagnostics[0].span.file == str(parts)
+
+
 @pytest.mark.parametrize(
     ("file", "before", "new", "code"),
     [

@@ -7,6 +7,7 @@ renamed if the expansions differ in names alone, and every name that changes has
 
 from __future__ import annotations
 
+import ast
 import keyword
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -15,16 +16,21 @@ from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, SourceText, Span, phrase, term
 from linkwright.language.definitions import NameKind
+from linkwright.language.grammar import root_of
+from linkwright.language.includes import real
 from linkwright.language.mentions import Mention, mentions_in
 from linkwright.language.occurrences import Occurrence, kinds_of_reference, kinds_of_text, occurrences_in
 from linkwright.language.workspace import Workspace
 from linkwright.lint.targets import DESCRIPTIONS
+from linkwright.sdf.worlds import SDF
 from linkwright.xacro import Expansion, expand
+from linkwright.xacro.faults import Frame, frames
 from linkwright.xmltree import Element, Overlay, Text
 from linkwright.xmltree.positions import attribute_value_range
 
 _OF_ROBOT = (NameKind.LINK, NameKind.JOINT, NameKind.MATERIAL)
 _NAME = re.compile(r"[^\s<>&\"']+")
+_ONE_NAME = re.compile(r"\$\{\s*(\w+)\s*\}")
 _MOST_ROUNDS = 4
 """How often references that still have an old name are searched."""
 
@@ -56,6 +62,8 @@ class Renaming:
 
 def name_at(text: str, file: Path, offset: int) -> Occurrence | None:
     """Return the name at an offset that can be renamed; None if there is none."""
+    if root_of(file) is SDF:  # the names of a model have scopes of their own
+        return None
     found = [name for name in occurrences_in(text, file) if name.start <= offset <= name.end]
     return min(found, key=lambda name: (name.end - name.start, not name.is_definition), default=None)
 
@@ -68,12 +76,17 @@ def references(project: Workspace, texts: Mapping[Path, str], name: Occurrence) 
         texts: the texts of the open files.
         name: the name.
     """
-    return [
-        other
-        for file in project.index.related(name.file, texts)
-        for other in occurrences_in(project.text(file, texts) or "", file)
-        if _is_same(other, name)
-    ]
+    found: dict[Path, list[Occurrence]] = {}
+    pending = [name.file]
+    is_shared = name.kind not in _OF_ROBOT  # a link of another robot with the same name is another link
+    for start in pending:
+        for file in project.index.related(start, texts):
+            if file not in found:
+                uses = occurrences_in(project.text(file, texts) or "", file)
+                found[file] = [use for use in uses if _is_same(use, name)]
+                if found[file] and is_shared:
+                    pending.append(file)
+    return [use for uses in found.values() for use in uses]
 
 
 def rename(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> Renaming:
@@ -96,12 +109,11 @@ def rename(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new:
     if taken is not None:
         message = phrase("{kind} '{name}' already exists", kind=term(name.kind.value), name=new)
         raise LinkwrightError(Diagnostic("LANG103", message, _span(project, texts, taken)))
-    proof = _Proof(project, texts, name)
+    proof = _Proof(project, texts, name, new)
     proof.edits.update(Edit(seed.file, seed.start, seed.end, new) for seed in seeds)
     if name.kind not in _OF_ROBOT:
-        if name.kind is NameKind.ARGUMENT and proof.is_passed():
-            message = phrase("callers pass the argument '{name}', and their files cannot be edited yet", name=name.name)
-            raise _unproved(message, name)
+        if name.kind is NameKind.ARGUMENT:
+            proof.rename_argument(new)
         proof.check_equal(name)
         return Renaming(tuple(sorted(proof.edits)))
     names = proof.follow(name)
@@ -150,12 +162,14 @@ class _Proof:
         unchanged: mentions of changed names that are not certain.
     """
 
-    def __init__(self, project: Workspace, texts: Mapping[Path, str], name: Occurrence) -> None:
+    def __init__(self, project: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> None:
         self.edits: set[Edit] = set()
         self.unchanged: tuple[Mention, ...] = ()
-        self._project, self._texts, self._name = project, texts, name
+        self._project, self._texts, self._name, self._new = project, texts, name, new
         self._before: list[tuple[Path, Mapping[str, str], Element, str]] = []
         self._error: LinkwrightError | None = None
+        self._renamed: dict[str, str] = {}
+        self._data: set[Path] = set()
         self._entries: set[Path] = set()
         self._add_entries(name.file)
 
@@ -165,21 +179,39 @@ class _Proof:
             if entry in self._entries:
                 continue
             self._entries.add(entry)
-            for values in self._project.argument_values(entry):
+            for values, _ in self._project.calls(entry):
                 try:
                     expansion = self._expand(entry, values, self._texts)
                 except LinkwrightError as error:  # noqa: PERF203 - each may fail for itself
                     self._error = error
                 else:
                     self._before.append((entry, values, expansion.document.root, str(expansion)))
+                    self._data.update(map(real, expansion.dependencies))
 
     def _expand(self, entry: Path, values: Mapping[str, str], texts: Mapping[Path, str]) -> Expansion:
         overlay = Overlay({str(path): text for path, text in texts.items()})
         return expand(entry, values, packages=self._project.finder(entry), overlay=overlay)
 
-    def is_passed(self) -> bool:
-        """Return whether a caller passes the argument that is renamed."""
-        return any(self._name.name in values for _, values, _, _ in self._before)
+    def rename_argument(self, new: str) -> None:
+        """Rename the argument in the calls of the descriptions, too.
+
+        Raises:
+            LinkwrightError: LANG104, a caller passes the argument by a name that is not written in the call.
+        """
+        old = self._name.name
+        passed = re.compile(rf"(?<!\w){re.escape(old)}(?=:=)|(?<=['\"]){re.escape(old)}(?=['\"]\s*:)")
+        for entry in self._entries:
+            for values, span in self._project.calls(entry):
+                if old not in values or span is None:
+                    continue
+                file = real(span.file)
+                text = self._project.text(file, self._texts) or ""
+                found = {Edit(file, *match.span(), new) for match in passed.finditer(text, *_call_range(text, span))}
+                if not found:
+                    why = phrase("a caller passes the argument, but its name is not written in the call")
+                    raise _unproved(why, self._name, span)
+                self.edits |= found
+        self._renamed = {old: new}
 
     def _edited(self) -> dict[Path, str]:
         """Return the texts of the open and the edited files, with the edits."""
@@ -202,7 +234,8 @@ class _Proof:
         texts = self._edited()
         for entry, values, root, text in self._before:
             try:
-                after = self._expand(entry, values, texts)
+                given = {self._renamed.get(key, key): value for key, value in values.items()}
+                after = self._expand(entry, given, texts)
             except LinkwrightError as error:
                 first = error.diagnostics[0]
                 raise _unproved(
@@ -267,11 +300,36 @@ class _Proof:
         place = attribute_value_range(source.text, element.offset, key) if key else _text_range(element)
         written = "" if place is None else source.text[place[0] : place[1]]
         file = Path(source.name)
+        if place is not None and "$" in written and written == self._name.name:
+            return self._moved_edit(file, place, self._new)
+        argument = self._passed_value(element, written, value)
+        if argument is not None:
+            return self._moved_edit(*argument, wanted)
         if place is None or written != value:
             message = phrase("'{value}' is computed from '{written}'", value=value, written=written or element.tag)
             raise _unproved(message, self._name, element.attribute_span(key) if key else element.span())
+        return self._moved_edit(file, place, wanted)
+
+    def _passed_value(self, element: Element, written: str, value: str) -> tuple[Path, tuple[int, int]] | None:
+        """Return where a call passes a value that is the whole of a text, such as ``${parent}``; None if none does."""
+        parameter = _ONE_NAME.fullmatch(written)
+        for frame in frames(element.origin if isinstance(element.origin, Frame) else None):
+            if parameter is None:
+                return None
+            source = frame.site.source
+            place = None if source is None else attribute_value_range(source.text, frame.site.offset, parameter[1])
+            if source is None or place is None:
+                continue
+            given = source.text[place[0] : place[1]]
+            if given == value:
+                return Path(source.name), place
+            parameter = _ONE_NAME.fullmatch(given)
+        return None
+
+    def _moved_edit(self, file: Path, place: tuple[int, int], new: str) -> Edit:
+        """Return an edit for a range of the edited text, in offsets of the text before the edits."""
         start = place[0] - self._shift(file, place[0])
-        return Edit(file, start, start + len(value), wanted)
+        return Edit(file, start, start + place[1] - place[0], new)
 
     def _shift(self, file: Path, offset: int) -> int:
         """Return how far the edits before an offset of the edited text have moved it."""
@@ -300,7 +358,7 @@ class _Proof:
                 mentions = [*mentions_in(text, file, olds)]
             for mention in mentions:
                 new = next((names[kind, mention.name] for kind in mention.kinds if (kind, mention.name) in names), None)
-                if new is not None and mention.name not in others:
+                if new is not None and mention.name not in others and file not in self._data:
                     found.add(Edit(file, mention.start, mention.end, new))
                 elif new is not None or not mention.kinds:
                     unchanged.append(mention)
@@ -326,6 +384,21 @@ class _Proof:
                 defined = [element.attributes.get("name") for element in after.elements(kind.value)]
                 if len(defined) != len(set(defined)):
                     raise _unproved(phrase("two {kind}s would have the same name", kind=term(kind.value)), self._name)
+
+
+def _call_range(text: str, span: Span) -> tuple[int, int]:
+    """Return the offsets of a call in the text of its file; in Python, those of the lines of the whole expression."""
+    source = SourceText(span.file, text)
+    first, last = source.offset(span.line, 1), source.offset(span.end_line, span.end_column)
+    if span.file.endswith(".py"):
+        try:
+            tree = ast.parse(text)
+        except (SyntaxError, ValueError, RecursionError, MemoryError):
+            return first, last
+        for node in ast.walk(tree):
+            if isinstance(node, ast.expr) and (node.lineno, node.col_offset + 1) == (span.line, span.column):
+                last = max(last, source.offset((node.end_lineno or 0) + 1, 1))
+    return first, last
 
 
 def _changed_definitions(before: Element, after: Element, name: Occurrence) -> Iterator[tuple[NameKind, str, str]]:

@@ -6,7 +6,7 @@ from collections.abc import Container, Iterable, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Span
 from linkwright.language.definitions import NameDefinition, definitions_in
 from linkwright.language.includes import IncludeIndex, real
 from linkwright.language.mentions import FILES as MENTIONING_FILES
@@ -83,9 +83,9 @@ class Workspace:
         except (OSError, LinkwrightError):
             return None
 
-    def argument_values(self, entry: Path) -> list[Mapping[str, str]]:
-        """Return the argument sets of a description: its defaults, and those of the settings or of callers."""
-        return [{}, *self._checker.argument_values(entry, self.index.packages)]
+    def calls(self, entry: Path) -> list[tuple[Mapping[str, str], Span | None]]:
+        """Return the argument sets of a description, each with the call that gives it, if its file has one."""
+        return [({}, None), *self._checker.calls(entry, self.index.packages)]
 
     def configuration_files(self, file: Path) -> list[Path]:
         """Return the files of a file's package that may mention links and joints; empty if it is in no package."""

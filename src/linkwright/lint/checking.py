@@ -165,16 +165,21 @@ class Checker:
         checked = examine_package(folder, settings, self.finder(folder / MANIFEST), overlay, contexts)
         return checked.diagnostics, trouble
 
-    def argument_values(self, file: Path, packages: Sequence[Path]) -> tuple[Mapping[str, str], ...]:
+    def calls(self, file: Path, packages: Sequence[Path]) -> list[tuple[Mapping[str, str], Span | None]]:
         """Return the values with which a description is expanded: those of the settings, or else of its callers.
 
         Args:
             file: the description.
             packages: the folders that are searched for callers.
+
+        Returns:
+            The complete sets of values, each with the location of the call, or None for values of the settings.
         """
         settings, _ = self.settings(file)
-        callers = (found.values for found in self._argument_sets(file, packages) if found.is_complete)
-        return settings.arguments_of(file) or tuple(callers)
+        configured = settings.arguments_of(file)
+        if configured:
+            return [(values, None) for values in configured]
+        return [(found.values, found.span) for found in self._argument_sets(file, packages) if found.is_complete]
 
     def _argument_sets(self, file: Path, packages: Sequence[Path]) -> tuple[ArgumentSet, ...]:
         """Return the argument sets that callers pass to a file.
