@@ -177,7 +177,7 @@ def test_packets_that_are_none_of_dds_leave_no_line_on_standard_error(domain):
                 for port in range(first, first + 30):
                     sender.sendto(data, ("127.0.0.1", port))
         time.sleep(0.3)
-        graph.close_now()
+        graph.close_threadsafe()
         """
     )
     assert (done.returncode, done.stderr) == (0, "")

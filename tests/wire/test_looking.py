@@ -108,7 +108,7 @@ def test_neither_numpy_nor_what_it_does_not_use_of_cyclone_is_imported():
         graph.create_node("looks")
         transport = join(graph, only_looks=True)
         assert transport.wait_until_ready(60)
-        graph.close_now()
+        graph.close_threadsafe()
         costly = ("numpy", "cyclonedds.pub", "cyclonedds.qos", "cyclonedds.idl._xt_builder", "urllib.request")
         print([name for name in costly if name in sys.modules])
         import cyclonedds

@@ -46,7 +46,7 @@ CHURN = """
     while not publisher.get_subscription_count():
         time.sleep(0.01)
     publisher.publish(Point())
-    first.close_now()  # and its type with it, were it not kept
+    first.close_threadsafe()  # and its type with it, were it not kept
     for number in range(24):
         graph, node = process("next")
         words = node.create_publisher(String, "/words", 10)
@@ -56,11 +56,11 @@ CHURN = """
         for _ in range(20):
             words.publish(String(data="word"))
             answering.publish(String(data="answer"))
-        graph.close_now()
+        graph.close_threadsafe()
         if number == 3:
             before = memory()
     print(f"{memory() - before:.1f}")
-    other.close_now()
+    other.close_threadsafe()
 """
 
 
@@ -84,7 +84,7 @@ TOGETHER = """
         for transport in [join(each) for each in graphs]:
             assert transport.wait_until_ready(60)
         for each in graphs:
-            each.close_now()
+            each.close_threadsafe()
 """
 
 

@@ -11,7 +11,7 @@ from linkwright.graph.parameters.files import read_parameter_file
 
 
 def examine_parameter_files(seen: Observation, files: Iterable[str | Path]) -> Iterator[Diagnostic]:
-    """Find problems with the parameter files of a running graph.
+    """Yield findings on parameter files, given the running graph.
 
     Raises:
         LinkwrightError: GRAPH211 and GRAPH212, a file cannot be read.

@@ -21,9 +21,9 @@ class TransformSeen:
     Attributes:
         parent: the parent frame.
         child: the child frame.
-        senders: full names of the nodes that published the transform, sorted.
-        static: whether it was published on a topic of static transforms.
-        valid: whether all its numbers are finite and its rotation is not zero.
+        senders: the sorted full names of the nodes that published the transform.
+        static: whether the transform was published on a topic of static transforms.
+        valid: whether all numbers are finite and the quaternion is not zero.
     """
 
     parent: str
@@ -39,8 +39,8 @@ class JointSeen:
 
     Attributes:
         name: the name of the joint.
-        senders: full names of the nodes that published the states, sorted.
-        topics: the topics on which they were published, sorted.
+        senders: the sorted full names of the nodes that published the states.
+        topics: the sorted names of the topics on which the states were published.
     """
 
     name: str
@@ -53,8 +53,8 @@ class DescriptionSeen:
     """An observed robot description.
 
     Attributes:
-        topic: the topic on which it was published.
-        sender: full name of the node that published it.
+        topic: the topic on which the description was published.
+        sender: the full name of the node that published the description.
         text: the URDF.
     """
 
@@ -68,9 +68,10 @@ class StampSeen:
     """The observed stamps of a node on a topic.
 
     Attributes:
-        topic: the topic.
+        topic: the name of the topic.
         sender: the full name of the publishing node.
-        behind_ns: how far the last stamp was behind the clock on arrival, in nanoseconds; negative if it was ahead.
+        behind_ns: the difference between the clock on arrival and the last stamp, in nanoseconds; negative if the stamp
+            was in the future.
         zero: whether the stamp was 0, which means that it was never set.
     """
 
@@ -86,8 +87,8 @@ class FrameSeen:
 
     Attributes:
         topic: the topic on which the messages were published.
-        sender: full name of the node that published them.
-        frame: the name of the frame in the last message.
+        sender: the full name of the node that published the messages.
+        frame: the frame in the last message.
     """
 
     topic: str
@@ -97,11 +98,11 @@ class FrameSeen:
 
 @dataclass(frozen=True, slots=True)
 class DriversSeen:
-    """Nodes that sent contradicting velocities at the same time on one topic.
+    """Nodes that sent contradictory velocities on one topic at the same time.
 
     Attributes:
         topic: the topic on which the velocities were published, as Twist or TwistStamped.
-        drivers: full names of the nodes that published them, sorted; a name occurs twice if two nodes have it.
+        drivers: the sorted full names of the publishing nodes; a name occurs twice if two nodes have it.
     """
 
     topic: str
@@ -142,21 +143,20 @@ class Observation:
 
     Attributes:
         seconds: the duration of the observation.
-        nodes: full names of the nodes; a name is repeated if several nodes have it.
-        endpoints: publishers, subscriptions, services and clients.
-        transforms: the transforms published.
-        joints: the joint states published.
-        descriptions: the robot descriptions published.
-        stamps: the stamps of topics whose messages have a header.
-        frames: the frames of messages, for topics whose messages have a header.
-        disputed: topics with several drivers at the same time.
-        clock: the observations of ``/clock``; None if it has no messages.
-        sim_time: ``use_sim_time`` of the nodes that responded, by full name.
-        lifecycle: states of the managed nodes, by full name.
+        nodes: the full names of the nodes; a name that several nodes share is repeated.
+        endpoints: the publishers, subscriptions, services and clients.
+        transforms: the published transforms.
+        joints: the published joint states.
+        descriptions: the published robot descriptions.
+        stamps: the stamps of messages with a header.
+        frames: the frames of messages with a header.
+        disputed: the topics on which several nodes sent contradictory velocities.
+        clock: the observation of ``/clock``; None if no message was received.
+        sim_time: the value of ``use_sim_time`` of each node that responded, by full name.
+        lifecycle: the states of the managed nodes, by full name.
         fixed_frames: the Fixed Frames of viewers.
         environment: the environment variables that affect discovery.
-        over_zenoh: whether the graph was observed over Zenoh, where QoS does not keep endpoints apart, and not over
-            DDS.
+        over_zenoh: whether the graph was observed over Zenoh, where QoS does not separate endpoints, instead of DDS.
     """
 
     seconds: float = 0.0
@@ -180,7 +180,7 @@ class Observation:
         return [endpoint for endpoint in self.endpoints if endpoint.kind is kind]
 
     def publishers_of(self, topic: str) -> list[EndpointInfo]:
-        """Return the publishers of a topic."""
+        """Return the observed publishers of a topic."""
         return [endpoint for endpoint in self.of_kind(EndpointKind.PUBLISHER) if endpoint.name == topic]
 
 
@@ -190,17 +190,14 @@ def node_of(endpoint: EndpointInfo) -> str:
 
 
 def nodes_of(endpoints: Iterable[EndpointInfo]) -> list[str]:
-    """Return the sorted full names of the nodes to which endpoints belong.
-
-    Each name occurs only once.
-    """
+    """Return the sorted full names of the nodes to which endpoints belong, without duplicates."""
     return sorted({node_of(endpoint) for endpoint in endpoints})
 
 
 def listed(names: Iterable[str], limit: int = 6) -> Phrase:
-    """Return names in quotes, separated by commas.
+    """Return names in quotation marks, separated by commas.
 
-    If there are more than `limit`, the result has the first ones, and the number of the rest.
+    If there are more than `limit` names, the result contains the first ones and the number of the others.
     """
     every = list(names)
     shown = quoted_names(every[:limit])

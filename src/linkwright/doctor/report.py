@@ -1,7 +1,4 @@
-"""The report of ``ros2 doctor --report``.
-
-It covers the computer, its network, the packages and the graph.
-"""
+"""The report of ``ros2 doctor --report`` about the computer, network, packages and graph."""
 
 from __future__ import annotations
 
@@ -42,7 +39,7 @@ def report(seen: Observation) -> str:
 
 
 def sections_text(sections: Iterable[Section]) -> str:
-    """Format sections as ros2 doctor does."""
+    """Format the sections of a report as ``ros2 doctor`` does."""
     lines = []
     for title, items in sections:
         lines.append(f"\n   {title}")
@@ -55,7 +52,7 @@ def _network() -> list[tuple[str, str]]:
     items = [("host", socket.gethostname())]
     try:
         names = [name for _, name in socket.if_nameindex()]
-    except (AttributeError, OSError):  # not available on every system
+    except (AttributeError, OSError):  # some systems do not provide this
         names = []
     for name in names:
         items.append(("device", name))
@@ -66,16 +63,13 @@ def _network() -> list[tuple[str, str]]:
 
 
 def _address(interface: str) -> str:
-    """Return the IPv4 address of an interface.
-
-    The result is empty if it has none or the system does not provide it.
-    """
+    """Return the IPv4 address of a network interface, or an empty string if it is not known."""
     if not sys.platform.startswith("linux"):
         return ""
     import fcntl
     import struct
 
-    get_address = 0x8915  # SIOCGIFADDR
+    get_address = 0x8915  # the ioctl request SIOCGIFADDR
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         try:
             answer = fcntl.ioctl(probe.fileno(), get_address, struct.pack("256s", interface[:15].encode()))

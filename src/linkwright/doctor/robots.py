@@ -1,4 +1,4 @@
-"""Problems of robots: their descriptions and joint states."""
+"""Problems of robot descriptions and joint states."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ class RobotSeen:
     """A robot whose description was observed on a topic.
 
     Attributes:
-        topic: the topic.
+        topic: the topic of the description.
         sender: the full name of the node that published the description.
         model: the parsed description.
-        prefix: the prefix that is put before the links' names to form frame names (``frame_prefix``).
+        prefix: the prefix of frame names, which precedes the names of links (``frame_prefix``).
     """
 
     topic: str
@@ -32,7 +32,7 @@ class RobotSeen:
 
     @property
     def root(self) -> str:
-        """The name of the root link, which has no parent joint."""
+        """The name of the root link, which is not the child of a joint."""
         return self.model.root
 
     @property
@@ -46,13 +46,13 @@ class RobotSeen:
         return frozenset(self.model.joints)
 
     def frame(self, link: str) -> str:
-        """Return the frame of a link."""
+        """Return the name of the frame of a link."""
         return f"{self.prefix}{link}"
 
     def leader(self, joint: Joint) -> str:
-        """Return the name of the joint whose state positions a joint.
+        """Return the name of the joint whose state determines the position of a joint.
 
-        It is the joint itself, or the joint that it mimics.
+        The result is the joint that it mimics, or else the joint itself.
         """
         followed: set[str] = set()
         while joint.mimic is not None and joint.name not in followed and joint.mimic.joint in self.model.joints:
@@ -62,9 +62,10 @@ class RobotSeen:
 
 
 def robots_in(seen: Observation) -> tuple[list[RobotSeen], list[Diagnostic]]:
-    """Read the observed descriptions, and return the robots.
+    """Parse the observed descriptions.
 
-    Findings on unreadable descriptions are returned, too.
+    Returns:
+        The robots, and findings on descriptions that cannot be parsed.
     """
     robots: dict[tuple[str, str], RobotSeen] = {}
     found = []
@@ -93,9 +94,9 @@ def robots_in(seen: Observation) -> tuple[list[RobotSeen], list[Diagnostic]]:
 
 
 def _prefix(robot: Robot, seen: Observation) -> str:
-    """Return the prefix of the robot's links among the observed frames.
+    """Return the prefix with which most links of a robot occur in the observed frames.
 
-    It is the prefix with which most links' names occur, or empty.
+    The result is empty if the frames have no prefix.
     """
     frames = {name for transform in seen.transforms for name in (transform.parent, transform.child)}
     if any(link in frames for link in robot.links):
@@ -105,7 +106,7 @@ def _prefix(robot: Robot, seen: Observation) -> str:
 
 
 def examine_robots(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnostic]:
-    """Find problems with descriptions and joint states."""
+    """Yield findings on descriptions and joint states."""
     yield from _several_descriptions(seen)
     yield from _contradictions(seen)
     if len(robots) == 1:

@@ -1,6 +1,6 @@
 """Problems of nodes, topics and services.
 
-They concern names, types, quality of service, and inactive managed nodes.
+The problems concern names, types, quality of service, and managed nodes that are not active.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _MOST_DIFFERENT = 3
 
 
 def examine_topics(seen: Observation) -> Iterator[Diagnostic]:
-    """Find problems with nodes, topics and services."""
+    """Yield findings on nodes, topics and services."""
     yield from _same_names(seen)
     yield from _types(seen)
     yield from _qos(seen)
@@ -87,7 +87,7 @@ def _types(seen: Observation) -> Iterator[Diagnostic]:
 def _without_universal_subscribers(types: dict[str, list[EndpointInfo]]) -> dict[str, list[EndpointInfo]]:
     """Return a topic's endpoints by type, without nodes that subscribe to all published types.
 
-    The result is empty if all subscribing nodes do so.
+    The result is empty if all subscribing nodes are such nodes.
     """
     every = [endpoint for endpoints in types.values() for endpoint in endpoints]
     published = {endpoint.type_name for endpoint in every if endpoint.kind is EndpointKind.PUBLISHER}
@@ -181,7 +181,7 @@ def _remedy(policy: QoSPolicyKind) -> Phrase:
 
 
 def _terms(endpoint: EndpointInfo, policy: QoSPolicyKind) -> str:
-    """Return the value of a policy at an endpoint, as it is named in code and on command lines."""
+    """Return the value of a QoS policy of an endpoint as text, such as ``RELIABLE``."""
     value = getattr(endpoint.qos, policy.name.lower())
     if policy is QoSPolicyKind.LIVELINESS:
         return f"{value.name} ({endpoint.qos.liveliness_lease_duration})"
@@ -189,9 +189,10 @@ def _terms(endpoint: EndpointInfo, policy: QoSPolicyKind) -> str:
 
 
 def _misnamed(seen: Observation) -> Iterator[tuple[str, str, list[EndpointInfo], str]]:
-    """Yield topics without a publisher for which a published topic is probably meant.
+    """Yield topics without a publisher whose subscribers probably mean another, published topic.
 
-    Each item has the topic, its type, its subscriptions, and the published topic.
+    Yields:
+        The topic, its type, its subscriptions, and the published topic.
     """
     published: dict[str, set[str]] = {}
     senders: dict[str, set[str]] = {}
@@ -246,7 +247,7 @@ def _unpublished(seen: Observation) -> Iterator[Diagnostic]:
 
 
 def _unheard_commands(seen: Observation) -> Iterator[Diagnostic]:
-    """Yield findings on velocity commands that no node receives."""
+    """Yield findings on velocity commands that no node subscribes to."""
     heard = {endpoint.name for endpoint in seen.of_kind(EndpointKind.SUBSCRIPTION)}
     misnamed = {like for _, _, _, like in _misnamed(seen)}
     accepting = {
@@ -281,7 +282,7 @@ def _unheard_commands(seen: Observation) -> Iterator[Diagnostic]:
 
 
 def _two_drivers(seen: Observation) -> Iterator[Diagnostic]:
-    """Yield findings on nodes that sent contradicting velocities on one topic."""
+    """Yield findings on nodes that sent contradictory velocities on one topic."""
     for drivers_seen in seen.disputed:
         yield Diagnostic(
             "DOC208",
@@ -297,9 +298,9 @@ def _two_drivers(seen: Observation) -> Iterator[Diagnostic]:
 
 
 def _alike(name: str, candidates: list[str]) -> str | None:
-    """Return the candidate that is probably meant, or None.
+    """Return the candidate that is probably meant by a name, or None.
 
-    It is in another namespace, or has a similar spelling.
+    A candidate matches if only its namespace differs, or if its spelling is similar.
     """
     last = name.rpartition("/")[2]
     same_end = [candidate for candidate in candidates if candidate.rpartition("/")[2] == last]
@@ -347,7 +348,7 @@ def _unserved(seen: Observation) -> Iterator[Diagnostic]:
 
 
 def examine_lifecycle(seen: Observation) -> Iterator[Diagnostic]:
-    """Find managed nodes that are not active."""
+    """Yield findings on managed nodes that are not active."""
     waiting: dict[str, list[str]] = {}
     for node, state in seen.lifecycle.items():
         if state in ("unconfigured", "inactive"):

@@ -1,4 +1,4 @@
-"""Observation of a running graph for some seconds."""
+"""Observes a running graph for several seconds."""
 
 from __future__ import annotations
 
@@ -87,10 +87,10 @@ async def observe(
 
     Args:
         graph: the graph, joined with other processes, on the running event loop.
-        node: the observing node of this graph, which is left out of the observations.
-        seconds: the duration.
-        fixed_frames: the Fixed Frames of viewers that do not have them in a parameter.
-        environment: the environment variables; by default those of this process.
+        node: the observing node of this graph, which is excluded from the observations.
+        seconds: the duration of the observation.
+        fixed_frames: the Fixed Frames of viewers that do not declare them as parameters.
+        environment: the environment variables; None for the environment of this process.
     """
     watcher = _Watcher(graph, node)
     end = time.monotonic() + seconds
@@ -125,7 +125,7 @@ async def observe(
 
 
 class _Watcher:
-    """Subscribes to topics of interest, and records observations."""
+    """Subscribes to the topics that the examinations need, and records observations."""
 
     def __init__(self, graph: Graph, node: Node) -> None:
         self._graph = graph
@@ -144,15 +144,15 @@ class _Watcher:
     def nodes(self) -> list[str]:
         """Return the full names of the nodes.
 
-        The watcher's own node and hidden nodes of other tools are excluded.
+        The observing node and the hidden nodes of other tools are excluded.
         """
         names = (join(identity.namespace, identity.name) for identity in self._graph.identities())
         return sorted(name for name in names if not _is_tool(name) and name != self._own)
 
     def endpoints(self) -> list[EndpointInfo]:
-        """Return the endpoints.
+        """Return the endpoints of the graph.
 
-        Those of the watcher's own node and of other tools' hidden nodes are excluded.
+        Endpoints of the observing node and of the hidden nodes of other tools are excluded.
         """
         return [
             endpoint
@@ -163,8 +163,8 @@ class _Watcher:
     async def until_named(self) -> None:
         """Wait until the node of every endpoint is known.
 
-        A node is discovered a moment after its endpoints. Before that, the endpoints of another command would count as
-        a part of the graph.
+        A node is discovered shortly after its endpoints. Until then, the endpoints of another command would be treated
+        as a part of the graph.
         """
         end = time.monotonic() + _NAMED_WITHIN
         while time.monotonic() < end:
@@ -173,9 +173,9 @@ class _Watcher:
             await asyncio.sleep(_LOOK_AGAIN)
 
     def waits_for_transforms(self) -> bool:
-        """Return whether published transforms have yet to arrive.
+        """Return whether a topic with publishers of transforms has not delivered any transform yet.
 
-        On a busy machine, the first ones take seconds.
+        On a busy machine, the first transforms take seconds to arrive.
         """
         heard = {topic for senders, _, _ in self._transforms.values() for topic in senders}
         return not self._awaited <= heard
@@ -185,9 +185,9 @@ class _Watcher:
         return self._node.get_fully_qualified_name()
 
     def subscribe(self) -> None:
-        """Subscribe to new topics of interest.
+        """Subscribe to new topics that the examinations need.
 
-        Topics of tools such as ``topic pub`` count only if they carry velocities.
+        A topic of a tool such as ``topic pub`` is included only if it carries velocities.
         """
         for endpoint in self._graph.endpoints():
             key = (endpoint.name, endpoint.type_name)
@@ -206,7 +206,7 @@ class _Watcher:
         last = topic.rpartition("/")[2]
         if kind == _TF:
             if last not in _TRANSFORMS or topic.startswith(_MODELS):
-                return  # poses of a simulated world have no frames; a bridge publishes the poses of gz's models on /tf
+                return  # poses in a simulated world are not frames; a bridge publishes gz's model poses on /tf
             is_static = last == _TRANSFORMS[1]
             self._awaited.add(topic)
             self._listen(endpoint, lambda message, info: self._on_transforms(topic, is_static, message, info))
@@ -223,9 +223,9 @@ class _Watcher:
             self._listen(endpoint, lambda data, info: self._on_stamped(topic, data, info, driving=driving), raw=True)
 
     def _listen(self, endpoint: EndpointInfo, callback: Any, *, raw: bool = False) -> None:
-        """Subscribe with a QoS profile that matches every publisher.
+        """Subscribe to a topic with a QoS profile that is compatible with every publisher.
 
-        Latched topics deliver their last messages.
+        The last messages of a latched topic are received, too.
         """
         offers = [publisher.qos for publisher in self._publishers(endpoint.name)]
         latched = all(offer.durability is DurabilityPolicy.TRANSIENT_LOCAL for offer in offers)
@@ -303,7 +303,7 @@ class _Watcher:
     def _note_stamp(self, topic: str, sender: str, seconds: int, nanoseconds: int) -> None:
         """Record the stamp of a message.
 
-        On latched topics such as a map, only stamps of 0 are recorded, because others may have any age.
+        On a latched topic such as a map, only a stamp of 0 is recorded, because other stamps can be of any age.
         """
         if topic in self._latched and (seconds or nanoseconds):
             return
@@ -314,7 +314,7 @@ class _Watcher:
     def transforms(self) -> tuple[TransformSeen, ...]:
         """Return the transforms, sorted by parent and child.
 
-        The senders are those on one topic, because a bridge may forward the transforms of another topic.
+        The senders of a transform are those on one topic, because a bridge may forward the transforms of another topic.
         """
         return tuple(
             TransformSeen(parent, child, max(map(tuple, map(sorted, senders.values())), key=len), is_static, valid)
@@ -322,14 +322,14 @@ class _Watcher:
         )
 
     def joints(self) -> tuple[JointSeen, ...]:
-        """Return the joints, sorted by name."""
+        """Return the joint states, sorted by the name of the joint."""
         return tuple(
             JointSeen(name, tuple(sorted(senders)), tuple(sorted(topics)))
             for name, (senders, topics) in sorted(self._joints.items())
         )
 
     def disputed(self) -> tuple[DriversSeen, ...]:
-        """Return the nodes that contradicted each other, by topic."""
+        """Return the nodes that sent contradictory velocities, by topic."""
         found = []
         for topic, dispute in sorted(self._disputes.items()):
             drivers = drivers_of(self._graph, publishers_of(self._graph, dispute.parties))
@@ -340,8 +340,8 @@ class _Watcher:
     def stamps_seen(self, sim_time: Mapping[str, bool]) -> tuple[StampSeen, ...]:
         """Return the stamps relative to the clock of their senders.
 
-        That is simulated time if they use or publish it. A sender that does neither may forward stamps of other nodes,
-        so the nearer clock counts.
+        The clock is simulated time if the sender uses or publishes simulated time. Any other sender may forward the
+        stamps of other nodes, so the clock that is closer to the stamp is used.
         """
         found = []
         makers = {node_of(publisher) for publisher in self._publishers("/clock")}
@@ -364,34 +364,32 @@ class _Watcher:
     # --- service calls -----------------------------------------------------------------------------------------------
 
     async def sim_time(self) -> dict[str, bool]:
-        """Return ``use_sim_time`` of each node that responds."""
+        """Return the value of ``use_sim_time`` of each node that responds, by full name."""
         kind = "rcl_interfaces/srv/GetParameters"
         answers = await self._ask_all(kind, "get_parameters", names=["use_sim_time"])
         return {node: bool(answer.values[0].bool_value) for node, answer in answers.items() if answer.values}
 
     async def lifecycle(self) -> dict[str, str]:
-        """Return the state of each managed node that responds."""
+        """Return the state of each managed node that responds, by full name."""
         answers = await self._ask_all("lifecycle_msgs/srv/GetState", "get_state")
         return {node: answer.current_state.label for node, answer in answers.items()}
 
     async def fixed_frames(self) -> list[FixedFrame]:
-        """Return the fixed frame of each viewer that has it as a parameter.
-
-        Linkwright's viewer does.
-        """
+        """Return the Fixed Frame of each viewer that declares it as a parameter, as ours does."""
         subscriptions = [endpoint for endpoint in self.endpoints() if endpoint.kind is EndpointKind.SUBSCRIPTION]
         viewers = {node_of(subscription) for subscription in subscriptions if subscription.type_name == _TF}
         package = "rcl_interfaces/srv"
         listed = await self._ask_all(f"{package}/ListParameters", "list_parameters", viewers, prefixes=[_FIXED_FRAME])
-        # A node without this parameter would log an error if it were requested.
+        # Do not request the parameter from other nodes, which would log an error.
         with_frame = {node for node, answer in listed.items() if _FIXED_FRAME in answer.result.names}
         answers = await self._ask_all(f"{package}/GetParameters", "get_parameters", with_frame, names=[_FIXED_FRAME])
         return [FixedFrame(answer.values[0].string_value, f"'{node}'") for node, answer in sorted(answers.items())]
 
     async def _ask_all(self, kind: str, service: str, among: set[str] | None = None, **fields: Any) -> dict[str, Any]:
-        """Call a service of all nodes that have it, and return the responses by full node name.
+        """Call a service of all nodes that offer it.
 
-        Only responses that arrive in time are included.
+        Returns:
+            The responses that arrived in time, by full name of the node.
         """
         from linkwright.messages import get_service
 
@@ -421,14 +419,14 @@ async def _result(future: Future[Any]) -> Any:
 
 
 def _frame_of(data: bytes) -> str:
-    """Return the frame in the header at the beginning of a message in CDR; the rest is not read."""
+    """Return the frame in the header of a serialized message, without reading the rest."""
     start = _CDR_HEADER + _STAMP[0].size
     size = int.from_bytes(data[start : start + 4], "little" if data[1] & 1 else "big")
     return data[start + 4 : start + 4 + size].rstrip(b"\0").decode(errors="replace").lstrip("/")
 
 
 def _is_tool(full_name: str) -> bool:
-    """Return whether a node belongs to a command that inspects the graph."""
+    """Return whether a node belongs to a command that only inspects the graph."""
     return full_name.rpartition("/")[2].startswith("_ros2cli")
 
 
@@ -438,7 +436,7 @@ def _begins_with_header(type_name: str) -> bool:
 
     try:
         fields = get_message(type_name).get_fields_and_field_types()
-    except LinkwrightError:  # the package of the type is not available
+    except LinkwrightError:  # the type's package is not available
         return False
     return next(iter(fields.items()), None) == ("header", "std_msgs/Header")
 

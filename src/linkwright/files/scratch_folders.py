@@ -1,9 +1,9 @@
-"""Temporary folders that do not long outlive their process, however it ends.
+"""Temporary folders that are removed even if their process is killed.
 
 A folder is removed when it is closed, or when Python ends. A process that is killed leaves its folder behind, so the
-next process that creates one removes the folders of processes that have ended. Folders in use are marked by a lock
-(flock(2)), which ends with the process. A process ID in the name would not work, because containers that share ``/tmp``
-have separate process IDs.
+next process that creates a folder removes those of processes that have ended. A folder in use is marked by a lock
+(flock(2)), which ends with the process. A process ID in the name would not be sufficient, because containers that share
+``/tmp`` have separate process IDs.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class ScratchFolder(TemporaryDirectory[str]):
 
     Args:
         purpose: a word for the folder's name.
-        place: the folder in which it is created; the system's folder for temporary files by default.
+        place: the parent folder; by default the system's folder for temporary files.
     """
 
     def __init__(self, purpose: str, place: Path | None = None) -> None:
@@ -49,7 +49,7 @@ class ScratchFolder(TemporaryDirectory[str]):
 def remove_abandoned(place: Path) -> None:
     """Remove the scratch folders of processes that have ended.
 
-    Folders that cannot be removed are kept.
+    A folder that cannot be removed is skipped.
     """
     if sys.platform == "win32":  # Windows cannot lock folders
         return
@@ -76,9 +76,9 @@ def _remove_if_abandoned(entry: os.DirEntry[str]) -> None:
 
 
 def _locked(folder: Path) -> int | None:
-    """Lock a folder, and return the file descriptor that holds the lock until it is closed.
+    """Lock a folder, and return a file descriptor that holds the lock until it is closed.
 
-    The result is None if the folder is locked already, or if the system has no such locks.
+    The result is None if the folder is already locked, or if the file system does not support such locks.
     """
     if sys.platform == "win32":
         return None

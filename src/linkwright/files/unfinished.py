@@ -1,6 +1,6 @@
-"""Files being written, such as recordings, that must be finished before the process ends.
+"""Files that must be completed before the process ends, such as recordings.
 
-Code that ends a process without waiting for its event loop, which may hang, calls `finish_all` first.
+Code that ends a process without waiting for the event loop, which may hang, calls `finish_all` first.
 """
 
 from __future__ import annotations
@@ -10,12 +10,12 @@ from weakref import WeakValueDictionary
 
 
 class Unfinished(Protocol):
-    """The interface of a writer whose file must be finished, if necessary by another thread."""
+    """The interface of a writer whose file must be completed, if necessary by another thread."""
 
     def finish(self) -> object:
-        """Write the end of the file, and nothing afterwards.
+        """Complete the file, and ignore later writes.
 
-        This may be called from any thread, even if the writer's own thread is busy.
+        This method may be called from any thread, even while the writer's own thread is busy.
         """
 
 
@@ -23,17 +23,17 @@ _unfinished: WeakValueDictionary[int, Unfinished] = WeakValueDictionary()
 
 
 def register_unfinished(what: Unfinished) -> None:
-    """Register a writer, so that its file is finished before the process ends."""
+    """Register a writer whose file must be completed before the process ends."""
     _unfinished[id(what)] = what
 
 
 def unregister_finished(what: Unfinished) -> None:
-    """Unregister a writer whose file is finished."""
+    """Unregister a writer whose file is complete."""
     _unfinished.pop(id(what), None)
 
 
 def finish_all() -> None:
-    """Finish the files of all registered writers."""
+    """Complete the files of all registered writers."""
     for reference in _unfinished.valuerefs():
         what = reference()
         if what is not None:

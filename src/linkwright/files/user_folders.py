@@ -15,33 +15,33 @@ _DEFAULTS = {"CACHE": ".cache", "CONFIG": ".config", "DATA": ".local/share", "ST
 
 
 def cache_folder() -> Path:
-    """Return the folder of data that can be recreated.
+    """Return the folder for data that can be recreated.
 
-    It is ``XDG_CACHE_HOME/linkwright`` or ``~/.cache/linkwright``.
+    The folder is ``XDG_CACHE_HOME/linkwright`` or ``~/.cache/linkwright``.
     """
     return _folder("CACHE")
 
 
 def config_folder() -> Path:
-    """Return the folder of the user's settings.
+    """Return the folder for the user's settings.
 
-    It is ``XDG_CONFIG_HOME/linkwright`` or ``~/.config/linkwright``.
+    The folder is ``XDG_CONFIG_HOME/linkwright`` or ``~/.config/linkwright``.
     """
     return _folder("CONFIG")
 
 
 def data_folder() -> Path:
-    """Return the folder of installed data.
+    """Return the folder for installed data, such as models.
 
-    It is ``XDG_DATA_HOME/linkwright`` or ``~/.local/share/linkwright``.
+    The folder is ``XDG_DATA_HOME/linkwright`` or ``~/.local/share/linkwright``.
     """
     return _folder("DATA")
 
 
 def state_folder() -> Path:
-    """Return the folder of data that outlives a run.
+    """Return the folder for data that persists between runs.
 
-    It is ``XDG_STATE_HOME/linkwright`` or ``~/.local/state/linkwright``.
+    The folder is ``XDG_STATE_HOME/linkwright`` or ``~/.local/state/linkwright``.
     """
     return _folder("STATE")
 

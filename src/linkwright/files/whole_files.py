@@ -1,4 +1,4 @@
-"""Writing a file completely or not at all: on any failure, the existing file is unchanged.
+"""Writes files atomically: if writing fails, the existing file is unchanged.
 
 All commands write their files with this module. It imports neither pathlib nor secrets, because short commands load it.
 """
@@ -12,23 +12,23 @@ import stat
 NO_SPACE = frozenset({errno.ENOSPC, errno.EFBIG, errno.EIO, getattr(errno, "EDQUOT", errno.ENOSPC)})
 """A disk that is full, a quota or limit that is reached, a disk that is broken: writing in place would only destroy."""
 
-_LONGEST_NAME = 200  # in bytes; the name of a draft is a little longer, and 255 are allowed
+_LONGEST_NAME = 200  # in bytes; file systems allow 255, and the name of the temporary file is a little longer
 
 
 def write_whole_file(path: str | os.PathLike[str], data: str | bytes, *, mode: int | None = None) -> None:
-    """Write a new file next to the existing one, then replace the latter.
+    """Write a file atomically, by replacing the existing file with a temporary one.
 
-    A symbolic link stays a link. If the folder does not allow that, or the file is a mount of its own, as Docker
-    creates them, the file is written in place. Until that is finished, a copy of its content is next to it or in the
-    folder for temporary files.
+    A symbolic link remains a link. If the folder does not permit another file, or the file is a mount of its own, as in
+    Docker, the file is written in place. In that case, a copy of the old contents is stored beside the file or in the
+    system's temporary folder until writing is complete.
 
     Args:
-        path: the file; its folder must exist. Devices and pipes are written to directly.
-        data: the new content; a text is written as UTF-8, with its own line ends.
-        mode: the permissions; by default the existing file's, or the usual permissions of a new file.
+        path: the file, whose folder must exist. Devices and pipes are written to directly.
+        data: the new contents. A string is encoded as UTF-8, without converting its line ends.
+        mode: the permissions; by default those of the existing file, or the usual permissions of a new file.
 
     Raises:
-        OSError: the file cannot be written; its content is unchanged.
+        OSError: the file cannot be written; its contents are unchanged.
     """
     content = data.encode("utf-8") if isinstance(data, str) else data
     target = os.path.realpath(os.fspath(path))
@@ -47,7 +47,7 @@ def write_whole_file(path: str | os.PathLike[str], data: str | bytes, *, mode: i
 
 
 def _permissions(path: str) -> int | None:
-    """Return the permissions of an existing regular file, or None for anything else."""
+    """Return the permissions of an existing regular file, otherwise None."""
     try:
         facts = os.stat(path)
     except OSError:
@@ -68,9 +68,9 @@ def _replace(target: str, content: bytes, mode: int | None) -> None:
 
 
 def _write_in_place(target: str, content: bytes) -> None:
-    """Overwrite a file, and restore its content on failure.
+    """Overwrite a file, and restore its old contents if writing fails.
 
-    If that fails, too, a copy of the content is kept.
+    If the old contents cannot be restored either, the copy of them is not deleted.
     """
     with open(target, "r+b", buffering=0) as file:
         before = file.readall()
@@ -108,9 +108,9 @@ def _beside(target: str, what: str) -> str:
 
 
 def _create(path: str, content: bytes, mode: int = 0o666) -> None:
-    """Create a file and flush it to the disk, or remove it if that fails.
+    """Create a file and flush it to the disk, or remove it if writing fails.
 
-    `mode` is its permissions, less the process's umask.
+    The process's umask is applied to `mode`.
     """
     descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), mode)
     try:
@@ -138,7 +138,7 @@ def _write_all(descriptor: int, content: bytes) -> None:
 
 
 def _remove(path: str) -> None:
-    from contextlib import suppress  # slow to import, and seldom needed
+    from contextlib import suppress  # imported here, because it is slow to import and seldom needed
 
     with suppress(OSError):
         os.unlink(path)

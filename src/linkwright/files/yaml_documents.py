@@ -1,7 +1,4 @@
-"""YAML that a user wrote, as nodes that record their places.
-
-Mistakes in it are reported in a uniform way.
-"""
+"""YAML files of the user, as nodes with their locations, for diagnostics about mistakes."""
 
 from __future__ import annotations
 
@@ -28,11 +25,11 @@ _DEEPEST = 50
 
 
 def read_source(path: Path, what: Phrase, code: str) -> SourceText:
-    """Return the text of a file that a user names.
+    """Read a file that a user names.
 
     Args:
         path: the path of the file.
-        what: the kind of file, for the error.
+        what: the kind of file, for the error message.
         code: the code of the error.
 
     Raises:
@@ -55,10 +52,10 @@ class YamlDocument:
 
     Args:
         source: the text of the document.
-        code: the code of diagnostics about mistakes in it.
+        code: the code of diagnostics about the document.
 
     Attributes:
-        root: the root node; None for an empty text.
+        root: the root node; None for an empty document.
 
     Raises:
         LinkwrightError: the text is not YAML, or nested too deeply.
@@ -70,11 +67,11 @@ class YamlDocument:
         self.root: yaml.Node | None = self._composed()
 
     def error(self, message: Phrase, node: yaml.Node | None, hint: Phrase | None = None) -> LinkwrightError:
-        """Return an error with a message about a node, or about the document if the node is None."""
+        """Return an error about a node, or about the document if `node` is None."""
         return LinkwrightError(Diagnostic(self._code, message, self.span(node), hint=hint, source=self.source))
 
     def span(self, node: yaml.Node | None) -> Span:
-        """Return the span of a node, or the beginning of the document if the node is None."""
+        """Return the span of a node, or the beginning of the document if `node` is None."""
         if node is None or node.start_mark is None or node.end_mark is None:
             return self.source.span(0, 0)
         start, end = node.start_mark, node.end_mark

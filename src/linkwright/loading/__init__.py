@@ -1,1 +1,1 @@
-"""Loading of code: extensions, deferred imports, and lean standard library modules."""
+"""Loading of code: extensions, deferred imports, and fast variants of standard modules."""

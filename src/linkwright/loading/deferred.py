@@ -1,4 +1,4 @@
-"""Names and regular expressions for programs that must start quickly: loaded or compiled on first use."""
+"""Names and regular expressions that are loaded or compiled on first use, for a quick start."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ if TYPE_CHECKING:
 
 
 def deferred(package: str, names: Mapping[str, Sequence[str]]) -> Callable[[str], Any]:
-    """Return a ``__getattr__`` for a package's ``__init__``: it imports a module when one of its names is used.
+    """Return a ``__getattr__`` for a package's ``__init__`` that imports modules on access.
 
     Source: PEP 562.
 
     Args:
         package: the name of the package.
-        names: the names of each module, by the module's name below the package.
+        names: the names that each module defines, by the module's name in the package.
 
     Returns:
-        A function that returns the attribute with a name, and raises AttributeError for unknown names.
+        A function that imports and returns the object with a name, and raises AttributeError for other names.
     """
 
     def find(name: str) -> Any:
@@ -36,10 +36,10 @@ def deferred(package: str, names: Mapping[str, Sequence[str]]) -> Callable[[str]
 
 
 class _Pattern:
-    """A pattern with the methods of a compiled pattern, which are set on first use.
+    """A pattern that is compiled when one of its attributes is first used.
 
-    Modules define their patterns at the top. A check of one robot loads seventy patterns and uses a quarter of them.
-    Compiling one takes as long as loading a small module.
+    Modules define their patterns at the top. A check of one robot imports seventy patterns and uses a quarter of them.
+    Compiling a pattern takes as long as importing a small module.
     """
 
     def __init__(self, text: Any, flags: int) -> None:
@@ -47,8 +47,8 @@ class _Pattern:
         self._flags = flags
 
     def __getattr__(self, name: str) -> Any:
-        # Python calls this for an attribute that does not exist; after this it exists.
-        if name.startswith("__"):  # such as those that `copy` looks up
+        # Python calls this method only for missing attributes, so each attribute is set once.
+        if name.startswith("__"):  # special names, which for example `copy` looks up
             raise AttributeError(name)
         value = getattr(re.compile(self._text, self._flags), name)
         setattr(self, name, value)
@@ -62,7 +62,7 @@ def _late(text: Any, flags: int = 0) -> Any:
 if TYPE_CHECKING:
 
     def lazy_pattern(text: AnyStr, flags: int = 0) -> re.Pattern[AnyStr]:
-        """Return a pattern like `re.compile`; an error in it is raised on first use."""
+        """Return a pattern like `re.compile`, which raises errors in the pattern only on first use."""
 
 else:
     lazy_pattern = _late

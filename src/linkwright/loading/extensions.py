@@ -1,13 +1,12 @@
-"""Extensions of Linkwright, found by the entry points of packages.
+"""Extensions of Linkwright, which packages declare as entry points.
 
-Linkwright's own are declared in the same way.
+Linkwright's own extensions are declared in the same way. Each group belongs to one subpackage: ``linkwright.displays``,
+``linkwright.page_features`` and others. The entry points of all installed packages are read once, and an object is
+imported only when it is loaded.
 
-Each group is read by one subpackage: ``linkwright.displays``, ``linkwright.page_features`` and others. The entry points
-of all installed packages are read once, and each object is imported only when it is loaded.
-
-They are read from where their specification puts them (PyPA, "Entry points specification"): ``*.dist-info`` in the
-folders of the search path. `importlib.metadata` also finds them in archives, but loading it takes as long as all other
-imports of ``linkwright check`` before it reads a file.
+Entry points are read from ``*.dist-info`` in the folders of the search path (PyPA, "Entry points specification").
+`importlib.metadata` also finds them in archives, but importing it takes as long as all other imports of
+``linkwright check`` before a file is read.
 """
 
 from __future__ import annotations
@@ -30,12 +29,12 @@ _READ = (_OURS, "launch_ros.")
 
 
 class EntryPoint(NamedTuple):
-    """An object of an installed package that is found by its name.
+    """An object of an installed package that is declared by a name.
 
     Attributes:
-        name: the name, unique within the group.
+        name: the name, which is unique in the group.
         value: ``module`` or ``module:attribute``.
-        distribution: the installed package.
+        distribution: the name of the installed package.
     """
 
     name: str
@@ -43,24 +42,25 @@ class EntryPoint(NamedTuple):
     distribution: str
 
     def load(self) -> Any:
-        """Return the object.
+        """Import the module, and return the object.
 
         Raises:
-            Exception: any error raised by importing its module, or AttributeError.
+            Exception: any error raised by importing the module, or AttributeError.
         """
         module, _, attribute = self.value.partition(":")
         found = import_module(module.strip())
-        attribute = attribute.partition("[")[0].strip()  # extras, which the specification allows here
+        attribute = attribute.partition("[")[0].strip()  # remove extras, which the specification allows here
         return attrgetter(attribute)(found) if attribute else found
 
 
 def extensions(group: str) -> Mapping[str, EntryPoint]:
-    """Return the entry points of a group by name: Linkwright's first, then those of other packages, sorted by name.
+    """Return the entry points of a group by name, Linkwright's before other packages'.
 
-    The order in which a package declares them is not reliable: some build tools sort entry points in the metadata,
-    others do not. If two packages declare the same name, the first one found is used; Linkwright's cannot be replaced.
+    The entry points of a package are sorted by name. The order in which a package declares them is not reliable,
+    because some build tools sort entry points in the metadata. If two packages declare the same name, the first one
+    found is used; Linkwright's cannot be replaced.
 
-    A group is empty if no installed package declares it: linkwright-core alone has few.
+    A group is empty if no installed package declares it, for instance if linkwright-core is installed alone.
 
     Raises:
         RuntimeError: a group of Linkwright is missing, because the installation's metadata is older than its code.
@@ -81,9 +81,9 @@ def _all_groups() -> Mapping[str, Mapping[str, EntryPoint]]:
 
 
 def _declarations() -> Iterator[tuple[str, str]]:
-    """Yield each installed distribution that declares entry points, with the text.
+    """Yield the name and the entry-point file of each distribution that has one.
 
-    Only the first of a name is used.
+    If several distributions have the same name, only the first is used.
     """
     seen = set()
     for folder in sys.path:
@@ -106,7 +106,10 @@ def _declarations() -> Iterator[tuple[str, str]]:
 
 
 def _declared(distribution: str, text: str) -> Iterator[tuple[str, EntryPoint]]:
-    """Yield the group and entry point of each line of an ``entry_points.txt`` whose group is used here."""
+    """Yield the group and the entry point for each line of an ``entry_points.txt``.
+
+    Groups that are not Linkwright's are skipped.
+    """
     group = ""
     for line in map(str.strip, text.splitlines()):
         if line.startswith("["):

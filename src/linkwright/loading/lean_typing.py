@@ -1,10 +1,8 @@
-"""`typing` for programs that must start quickly.
+"""A fast replacement of `typing`, with the names that annotations use.
 
-The module provides the names used in annotations without the cost of `typing`.
-
-Importing `typing` took a seventh of the time of ``linkwright xacro`` for a small file. Annotations are texts that are
-never evaluated (``from __future__ import annotations``), so nearly all of `typing` serves type checkers, which see the
-names of `typing` here. At run time the names are classes that can be subscripted, joined by ``|`` and derived from. A
+Importing `typing` took a seventh of the time of ``linkwright xacro`` for a small file. Annotations are never evaluated
+(``from __future__ import annotations``), so nearly all of `typing` is needed only by type checkers, which see the names
+of `typing` here. At run time, the names are classes that can be subscripted, joined by ``|`` and derived from. A
 program that evaluates annotations, as ``typing.get_type_hints`` does, needs `typing` itself.
 """
 

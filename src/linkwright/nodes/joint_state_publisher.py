@@ -362,8 +362,7 @@ class JointStatePublisher(SingleNode):
 
     def _publish_now(self) -> None:
         # Delay the next periodic message by a full period. If it were sent right after this message,
-        # robot_state_publisher would
-        # delay the next move of a slider.
+        # robot_state_publisher would delay the next move of a slider.
         self._timer.reset()
         self._publish()
 

@@ -1,1 +1,1 @@
-"""Process-wide matters: arguments, standard streams, Ctrl-C, event loop, processors, clock unit."""
+"""Process-wide functions for arguments, standard streams, Ctrl-C and the event loop."""

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase
 
-# Not compiled here: few commands need it.
+# a string, because few commands need the compiled pattern
 _SINGLE_SIGN = r"^-*([A-Za-z_][\w-]*)(=|:)(?!=)(.*)$"
 
 
@@ -19,9 +19,9 @@ def _malformed(word: str, hint: Phrase) -> Diagnostic:
 def parse_assignments(
     words: Iterable[str], malformed: Callable[[str, Phrase], Diagnostic] = _malformed
 ) -> dict[str, str]:
-    """Return the names and values of ``name:=value`` arguments.
+    """Parse arguments of the form ``name:=value``, and return the values by name.
 
-    If a name is repeated, the last one wins.
+    If a name is repeated, its last value is used.
 
     Args:
         words: the arguments.

@@ -1,10 +1,8 @@
-"""Running a coroutine as ``asyncio.run`` does since Python 3.11.
+"""Runs a coroutine as ``asyncio.run`` does since Python 3.11, with a hook before it starts.
 
-In addition, a hook is called between the creation of the loop and its work.
-
-If a loop is interrupted while it is being created, it prints a complaint on standard error. Ctrl-C cancels the
-coroutine: raised anywhere else, KeyboardInterrupt could abort an import halfway, and on Python 3.10 the import lock
-would stay locked for other threads that import the same module.
+The hook is called after the loop is created, because a loop that is interrupted during its creation prints an error.
+Ctrl-C cancels the coroutine. If KeyboardInterrupt were raised anywhere else, it could abort an import, and on Python
+3.10 the import lock would remain locked for other threads that import the same module.
 """
 
 from __future__ import annotations
@@ -20,11 +18,12 @@ T = TypeVar("T")
 
 
 def run_coroutine(make: Callable[[], Coroutine[Any, Any, T]], ready: Callable[[], object]) -> T:
-    """Run a coroutine on a new event loop and return its result.
+    """Run a coroutine on a new event loop, and return its result.
 
     Args:
         make: returns the coroutine.
-        ready: called when the loop exists and nothing runs on it yet; from then on KeyboardInterrupt may be raised.
+        ready: called after the loop is created and before the coroutine starts; from then on KeyboardInterrupt may be
+            raised.
 
     Raises:
         KeyboardInterrupt: Ctrl-C was pressed, and the coroutine was cancelled.
@@ -39,7 +38,7 @@ def run_coroutine(make: Callable[[], Coroutine[Any, Any, T]], ready: Callable[[]
 
 
 def _run(make: Callable[[], Coroutine[Any, Any, T]], ready: Callable[[], object]) -> T:
-    """Run like `asyncio.Runner`, which Python 3.10 lacks."""
+    """Run a coroutine as `asyncio.Runner` does, which Python 3.10 lacks."""
     loop = asyncio.new_event_loop()
     try:
         asyncio.set_event_loop(loop)
@@ -64,9 +63,9 @@ def _run(make: Callable[[], Coroutine[Any, Any, T]], ready: Callable[[], object]
 
 
 class _Interruptions:
-    """A context in which the first Ctrl-C cancels a task, and later ones raise KeyboardInterrupt.
+    """A context in which the first Ctrl-C cancels a task; later ones raise KeyboardInterrupt.
 
-    It has no effect if another handler handles Ctrl-C, or in a thread other than the main thread.
+    The context has no effect if SIGINT has another handler, or in a thread other than the main thread.
     """
 
     def __init__(self, loop: asyncio.AbstractEventLoop, main: asyncio.Task[Any]) -> None:
@@ -91,7 +90,7 @@ class _Interruptions:
         if self.count > 1 or self._main.done():
             raise KeyboardInterrupt
         self._main.cancel()
-        self._loop.call_soon_threadsafe(lambda: None)  # wakes the loop, which may be waiting for files only
+        self._loop.call_soon_threadsafe(lambda: None)  # wake the loop, which may be waiting only for files
 
 
 def _cancel_the_rest(loop: asyncio.AbstractEventLoop) -> None:

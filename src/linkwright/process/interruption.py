@@ -1,6 +1,6 @@
-"""Handling of Ctrl-C, including the time while a program is still being loaded.
+"""Handles Ctrl-C, including while a program is still being imported.
 
-During that time no ``except KeyboardInterrupt`` is in force. This module imports almost nothing, so that it takes
+During the imports, no ``except KeyboardInterrupt`` is active yet. This module imports almost nothing, so that it takes
 effect early.
 """
 
@@ -12,7 +12,7 @@ import os
 import sys
 import time
 
-TYPE_CHECKING = False  # defined here because importing `typing` takes longer than everything else in this module
+TYPE_CHECKING = False  # defined here, because importing `typing` takes longer than the rest of this module
 if TYPE_CHECKING:
     from collections.abc import Callable
     from typing import Any, Protocol
@@ -34,31 +34,31 @@ _SOON_SECONDS = 0.01
 
 
 def end_at_once() -> None:
-    """Let Ctrl-C, and any other SIGINT, end the process from now on, without a message.
+    """Make SIGINT (Ctrl-C) end the process silently, while there is nothing to clean up.
 
-    It is for the time when there is nothing to clean up. It also takes effect if the process was started with SIGINT
-    ignored: scripts do so for every program that they start with ``&``, and then use ``kill -INT`` to end it. ROS's
-    programs obey that as well, because rclpy and rclcpp always install handlers.
+    This also applies if the process was started with SIGINT ignored. Scripts do so for every program that they start
+    with ``&``, and later use ``kill -INT`` to end the program. ROS's programs obey this signal as well, because
+    rclpy and rclcpp always install handlers.
     """
     if _signal.getsignal(_signal.SIGINT) in (_signal.default_int_handler, _signal.SIG_IGN):
         _signal.signal(_signal.SIGINT, _end)
 
 
 def raise_interrupts() -> None:
-    """From now on, let Ctrl-C raise KeyboardInterrupt again, which code may handle."""
+    """Make Ctrl-C raise KeyboardInterrupt again, so that code can handle it."""
     if _signal.getsignal(_signal.SIGINT) is _end:
         _signal.signal(_signal.SIGINT, _signal.default_int_handler)
         when_lost(lambda: signal_again(_signal.SIGINT))
 
 
 def when_lost(deliver: Callable[[], None]) -> Callable[[Any], Any]:
-    """Redeliver each KeyboardInterrupt that Python drops with a message and that no code can catch.
+    """Call a function for each KeyboardInterrupt that Python discards.
 
-    Python drops a KeyboardInterrupt that is raised in a destructor or in a weak reference's callback; imports run these
-    all the time.
+    Python discards a KeyboardInterrupt, with a message, if it is raised in a destructor or in the callback of a weak
+    reference. Imports run these frequently, and no code can catch the exception.
 
     Args:
-        deliver: called in a new thread, a moment later.
+        deliver: the function, which a new thread calls shortly afterwards to send the signal again.
 
     Returns:
         The previous ``sys.unraisablehook``.
@@ -80,18 +80,15 @@ def when_lost(deliver: Callable[[], None]) -> Callable[[Any], Any]:
 
 
 def signal_again(number: int) -> None:
-    """Send a signal to this process, which the main thread handles as if it came from outside."""
+    """Send a signal to this process, so that the main thread handles it like an external signal."""
     if sys.platform == "win32":
-        _thread.interrupt_main(number)  # ``os.kill`` would end the process there
+        _thread.interrupt_main(number)  # on this system, ``os.kill`` would end the process
     else:
         os.kill(os.getpid(), number)
 
 
 def interrupt(process: Interruptible) -> None:
-    """Ask another process to end, as Ctrl-C does.
-
-    On Windows, which cannot send that signal, terminate it.
-    """
+    """Request another process to end, as Ctrl-C does; on Windows, terminate the process."""
     if sys.platform == "win32":
         process.terminate()
     else:

@@ -11,7 +11,7 @@ _UNKNOWN = 2
 def usable_processors() -> int:
     """Return the number of processors that this process may use.
 
-    If the system has no affinity, these are all processors of the machine.
+    On a system without processor affinity, this is the number of processors of the machine.
     """
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))

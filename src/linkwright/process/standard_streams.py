@@ -1,7 +1,7 @@
-"""Standard streams that write any text completely, with any code page, locale and disk.
+"""Makes the standard streams write any text completely, in any locale.
 
-Descriptions are UTF-8 and may name a link in any script, and messages may be Chinese, while Western editions of Windows
-write to files and pipes in code page 1252. This module imports little, because short commands load it.
+Descriptions are UTF-8 and can contain names in any script, and messages can be Chinese, but Western editions of Windows
+write files and pipes in code page 1252. This module imports little, because short commands load it.
 """
 
 from __future__ import annotations
@@ -11,13 +11,13 @@ import io
 import os
 import sys
 
-TYPE_CHECKING = False  # defined here because importing `typing` takes longer than everything else in this module
+TYPE_CHECKING = False  # defined here, because importing `typing` takes longer than the rest of this module
 if TYPE_CHECKING:
     from typing import Any
 
 
 class _WholeWrites(io.RawIOBase):
-    """A file without a buffer that writes all given bytes, or raises OSError."""
+    """An unbuffered file that writes all given bytes, or raises OSError."""
 
     def __init__(self, raw: io.RawIOBase) -> None:
         self._raw = raw
@@ -43,11 +43,10 @@ class _WholeWrites(io.RawIOBase):
 
 
 def _write_completely() -> None:
-    """Let unbuffered standard output raise an error if a disk is full.
+    """Make unbuffered standard output raise an error if the disk is full.
 
-    Output is unbuffered with ``python -u`` or ``PYTHONUNBUFFERED``.
-
-    A write to such a stream on a full disk may write only a part, and Python drops the rest.
+    Standard output is unbuffered with ``python -u`` or ``PYTHONUNBUFFERED``. If the disk is full, a write to such a
+    stream may write only a part of the data, and Python discards the rest.
     """
     out = sys.stdout
     if isinstance(out, io.TextIOWrapper) and isinstance(out.buffer, io.FileIO):
@@ -55,10 +54,10 @@ def _write_completely() -> None:
 
 
 def accept_any_text() -> None:
-    """Let the standard streams write any text, and write it completely.
+    """Make the standard streams write any text, and write it completely.
 
-    Files and pipes use UTF-8, like description files, and like Python itself from 3.15 on (PEP 686). A character that a
-    terminal cannot display is written as its number, as with an encoding in ``PYTHONIOENCODING``.
+    Files and pipes use UTF-8, like description files, and like Python from 3.15 on (PEP 686). A character that a
+    terminal cannot display is written as an escape sequence, as with an encoding in ``PYTHONIOENCODING``.
     """
     _write_completely()
     chosen = bool(os.environ.get("PYTHONIOENCODING"))

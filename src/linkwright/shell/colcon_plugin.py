@@ -1,9 +1,7 @@
-"""A colcon plugin for ``ament_cmake`` packages without ament.
+"""A colcon plugin that installs ``ament_cmake`` packages without ament, by copying files.
 
-It copies the files that a package installs.
-
-colcon finds the classes by the entry points of this distribution. Such a package gets a separate type, for which the
-task is registered; if ament_cmake is available, the plugin does nothing.
+colcon finds the classes through the entry points of this distribution. The plugin gives such a package a type of its
+own, for which the task is registered. If ament_cmake is available, the plugin does nothing.
 """
 
 from __future__ import annotations
@@ -32,25 +30,25 @@ _INDEX = "share/ament_index/resource_index"
 
 
 class CopiedPackageIdentification(RosPackageIdentification):  # type: ignore[misc]  # its base has no types
-    """Distinguishes ``ament_cmake`` packages that can only be copied from those that can be built."""
+    """Identifies ``ament_cmake`` packages that are only copied because ament_cmake is missing."""
 
     PRIORITY = RosPackageIdentification.PRIORITY + 10
 
     def identify(self, desc: Any) -> None:
-        """Identify a ROS package as colcon-ros does, and set our type if there is no ament_cmake."""
+        """Identify a ROS package as colcon-ros does, and set our type if ament_cmake is missing."""
         super().identify(desc)
         if desc.type == "ros.ament_cmake" and not _has_ament_cmake(os.environ):
             desc.type = COPIED
 
 
 class CopyingAmentCmakeTask(TaskExtensionPoint):  # type: ignore[misc]  # its base has no types
-    """Installs the files that an ``ament_cmake`` package copies, and reports the skipped compiled parts."""
+    """Installs the files that an ``ament_cmake`` package copies, and reports skipped parts."""
 
     async def build(self) -> int:
-        """Copy the package's files and return the exit status.
+        """Copy the package's files, and return the exit status.
 
-        An ``ament_cmake`` package is found by the same files as any other package: its marker in the resource index,
-        and the scripts that put its prefix into the environment.
+        Other programs recognise the package by the same files as any other package: its marker in the resource index,
+        and the scripts that add its prefix to the environment.
         """
         args, package = self.context.args, self.context.pkg
         folder = Path(args.path)
@@ -75,7 +73,7 @@ class CopyingAmentCmakeTask(TaskExtensionPoint):  # type: ignore[misc]  # its ba
             hooks += create_environment_hook(
                 "pythonpath", Path(args.install_base), package.name, "PYTHONPATH", _site(), mode="prepend"
             )
-        # Hooks in a shell's language call functions of ament; ``.dsv`` hooks also work with colcon.
+        # Hooks in a shell's language call functions of ament; only ``.dsv`` hooks also work with colcon alone.
         hooks += [Path(hook) for hook in cmake.hooks if hook.endswith(".dsv")]
         create_environment_scripts(package, args, additional_hooks=hooks)
         return 0
@@ -103,7 +101,7 @@ def _install_all(args: Any, name: str, folder: Path, cmake: CMakeFile) -> None:
 
 
 def _install_module(args: Any, folder: Path, module: str) -> None:
-    """Install a Python module, or a Python package with its contents."""
+    """Install a Python module, or a Python package with its files."""
     path = folder / module
     if not path.exists():
         raise FileNotFoundError(module)
@@ -114,7 +112,7 @@ def _install_module(args: Any, folder: Path, module: str) -> None:
 
 
 def _site() -> str:
-    """Return the folder of Python packages in a prefix, relative to it."""
+    """Return the folder for Python packages, relative to the install prefix."""
     paths = sysconfig.get_paths("posix_prefix" if os.name != "nt" else "nt", vars={"base": "", "platbase": ""})
     return paths["purelib"].strip("/\\").replace("\\", "/")
 

@@ -1,6 +1,6 @@
-"""Hints on replacements for ROS programs that are not available.
+"""Hints about replacements for ROS programs that are not available.
 
-``python -m linkwright.shell.instead NAME`` prints a hint; shells run it for an unknown command.
+Shells run ``python -m linkwright.shell.instead NAME`` for an unknown command to print such a hint.
 """
 
 from __future__ import annotations
@@ -58,16 +58,16 @@ def no_such_command(name: str, others: tuple[str, ...], otherwise: Phrase | None
     """Return the error SHELL101 for an unknown command, with a hint.
 
     Args:
-        name: the command as typed.
+        name: the command that the user typed.
         others: existing commands, for suggestions.
-        otherwise: the hint for an unknown command.
+        otherwise: the hint if there is neither a replacement nor a suggestion.
     """
     hint = INSTEAD.get(name) or did_you_mean(name, others) or otherwise
     return LinkwrightError(Diagnostic("SHELL101", phrase("there is no command '{words}'", words=name), hint=hint))
 
 
 def main(name: str) -> int:
-    """Print the hint, and return a shell's exit status for an unknown command."""
+    """Print the hint for an unknown command, and return the exit status that shells use."""
     print_diagnostics(no_such_command(name, ()).diagnostics, sys.stderr)
     return 127
 

@@ -1,4 +1,4 @@
-"""The commands of ROS 2 as small programs in a separate folder, which is appended to the search path."""
+"""The commands of ROS 2 as small programs in a folder that is appended to the search path."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ PROGRAMS = {
 
 
 def write_programs(folder: Path, python: str = sys.executable) -> None:
-    """Write one program for each command into a folder.
+    """Write a program for each command to a folder.
 
     Args:
         folder: an existing folder.
-        python: the interpreter that runs them, one that can import Linkwright.
+        python: the interpreter that runs the programs, which must be able to import Linkwright.
     """
     for name, (module, word) in PROGRAMS.items():
         words = [python, "-m", module, *([word] if word else [])]
@@ -50,9 +50,9 @@ def write_programs(folder: Path, python: str = sys.executable) -> None:
 
 
 def offer_programs(environment: MutableMapping[str, str]) -> None:
-    """Append the commands to the search path, for launch files that run commands such as ``ros2 topic pub``.
+    """Append the folder of our programs to the search path, for commands in launch files.
 
-    They are stored in the cache folder; if that is not writable, nothing is offered.
+    The programs are written to the cache folder. If that folder is not writable, the search path is not changed.
     """
     key = hashlib.sha256(repr((sys.executable, sorted(PROGRAMS.items()))).encode()).hexdigest()[:16]
     folder = cache_folder() / "programs" / key
@@ -66,12 +66,15 @@ def offer_programs(environment: MutableMapping[str, str]) -> None:
 
 
 def offer_ros_variables(environment: MutableMapping[str, str]) -> None:
-    """Set the variables that launch files expect from a sourced ROS 2, if none is sourced; the values follow Humble."""
+    """Set the variables of a sourced ROS 2 that launch files expect, unless ROS 2 is sourced.
+
+    The values are those of Humble.
+    """
     if "ROS_DISTRO" not in environment:
         environment.update(ROS_VARIABLES)
         environment[ASSUMED] = "1"
         for name in (
             "GZ_SIM_RESOURCE_PATH",
             "LD_LIBRARY_PATH",
-        ):  # Launch files append to them without checking that they exist.
+        ):  # Launch files append to these variables without checking that they are set.
             environment.setdefault(name, "")

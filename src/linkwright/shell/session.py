@@ -1,7 +1,7 @@
-"""Running a shell, or one command, in an environment with the commands of ROS 2.
+"""Runs a shell, or a command, in an environment with the commands of ROS 2.
 
-The folder of our programs is at the end of the search path, so that installed programs take precedence. Start-up files
-of shells (``~/.bashrc`` often sources a ROS 2) set the path again, so the shell reads them first and then our file.
+The folder of our programs is last on the search path, so that installed programs take precedence. Start-up files of
+shells often set the path again (``~/.bashrc`` may source ROS 2), so the shell reads them before our own start-up file.
 """
 
 from __future__ import annotations
@@ -32,15 +32,15 @@ def run_shell(
     environment: Mapping[str, str] | None = None,
     additions: Callable[[str], str] | None = None,
 ) -> int:
-    """Run the user's shell, or one command, until it ends.
+    """Run the user's shell, or a command, until it ends.
 
     Args:
-        command: program and arguments; if empty, the user's interactive shell.
-        environment: the base environment; that of this process if omitted.
-        additions: returns additional start-up text for ``bash``, ``zsh`` or ``fish``.
+        command: the program and its arguments; empty for the user's interactive shell.
+        environment: the environment to extend; None for the environment of this process.
+        additions: returns additional start-up commands for ``bash``, ``zsh`` or ``fish``.
 
     Returns:
-        The exit status; 128 plus the signal's number if a signal ended it, as in shells.
+        The exit status; 128 plus the signal's number if a signal ended the program, as in shells.
 
     Raises:
         LinkwrightError: SHELL101, there is no such command.
@@ -66,12 +66,12 @@ _QUOTES = phrase(
 def shell_environment(folder: Path, base: Mapping[str, str]) -> dict[str, str]:
     """Return the environment of the shell.
 
-    If no ``ros2`` is installed, the folder of Linkwright's interpreter comes first in the search path, so that
-    ``python3`` finds our stand-ins and their dependencies.
+    If no ``ros2`` is installed, the folder of Linkwright's interpreter is first on the search path, so that ``python3``
+    finds our stand-ins and their dependencies.
 
     Args:
         folder: the folder of our programs.
-        base: the base environment.
+        base: the environment to extend.
     """
     variables = process.environment(base)
     parts = [part for part in variables.get("PATH", os.defpath).split(os.pathsep) if part and part != base.get(MARK)]
@@ -87,12 +87,15 @@ _STARTED_BY_A_FILE = ("bash", "zsh", "fish")
 
 
 def _interactive(scratch: Path, variables: dict[str, str], additions: Callable[[str], str]) -> list[str]:
-    """Return the command of the user's shell that keeps our search path after its start-up files."""
+    """Return the command that starts the user's shell and then restores our search path.
+
+    The shell's start-up files often set the search path, so ours is set after them.
+    """
     if sys.platform == "win32":
         return [os.environ.get("COMSPEC", "cmd.exe")]
     shell = os.environ.get("SHELL") or "/bin/sh"
     kind = Path(shell).name
-    if kind in _STARTED_BY_A_FILE:  # Our folder is placed after the entries of the user's own file.
+    if kind in _STARTED_BY_A_FILE:  # the entries of the user's start-up file precede our folder
         parts = variables["PATH"].split(os.pathsep)
         variables["PATH"] = os.pathsep.join(part for part in parts if part != variables[MARK])
     if kind == "bash":
@@ -123,7 +126,10 @@ def _interactive(scratch: Path, variables: dict[str, str], additions: Callable[[
 
 
 def _start_file(own: str, variables: Mapping[str, str]) -> str:
-    """Return the start-up file for bash and zsh: the user's file, then our commands at the end of the path."""
+    """Return the contents of the start-up file for bash and zsh.
+
+    It reads the user's own file, then appends our commands to the search path.
+    """
     interpreter = shlex.quote(str(Path(sys.executable).parent))
     standins = shlex.quote(process.standin_path())
     return f"""\
@@ -136,18 +142,16 @@ PS1="(linkwright) $PS1"
 
 
 def _run(words: Sequence[str], variables: Mapping[str, str]) -> int:
-    """Run the command until it ends, and forward signals.
+    """Run a command until it ends, and forward signals to it; return its exit status.
 
-    Ctrl-C in a terminal is not forwarded, because it reaches both processes.
-
-    Without a terminal, the command is in its own process group, so that signals to ours do not reach it twice. Ctrl-C
-    must not become a KeyboardInterrupt here: if one is raised just after the wait ends, the exit status is lost, and
-    `subprocess` returns 0.
+    Ctrl-C in a terminal is not forwarded, because both processes receive it. Without a terminal, the command has its
+    own process group, so that signals to our group do not reach it twice. Ctrl-C must not raise KeyboardInterrupt
+    here: if it does so just after the wait ends, the exit status is lost, and `subprocess` returns 0.
     """
     import signal
 
     child: subprocess.Popen[bytes] | None = None
-    early: list[int] = []  # signals that arrived while the command was starting
+    early: list[int] = []  # signals that arrived before the command was running
     alone = os.name == "posix" and not _has_terminal()
 
     def pass_on(number: int, _frame: object) -> None:
@@ -159,7 +163,7 @@ def _run(words: Sequence[str], variables: Mapping[str, str]) -> int:
     previous = {number: signal.signal(number, pass_on) for number in _forwarded_signals()}
     try:
         first = _detaching() if alone else None
-        # The user's own command (S603); there is only one thread, and `first` imports nothing (PLW1509).
+        # The command is the user's own (S603). There is only one thread, and `first` imports nothing (PLW1509).
         with subprocess.Popen(words, env=dict(variables), preexec_fn=first) as child:  # noqa: S603, PLW1509
             for number in early:
                 if number == signal.SIGINT:
@@ -174,7 +178,7 @@ def _run(words: Sequence[str], variables: Mapping[str, str]) -> int:
 
 
 def _has_terminal() -> bool:
-    """Return whether a terminal controls this process, so that its Ctrl-C also reaches the command."""
+    """Return whether a terminal controls this process; its Ctrl-C then reaches the command, too."""
     try:
         os.close(os.open("/dev/tty", os.O_RDWR | os.O_NOCTTY))
     except OSError:
@@ -183,9 +187,9 @@ def _has_terminal() -> bool:
 
 
 def _detaching() -> Callable[[], None]:
-    """Return the pre-exec function of the command.
+    """Return a function that the command's process runs before the command.
 
-    It leaves our process group and, on Linux, ends the command if we are killed.
+    The function leaves our process group and, on Linux, ends the command if our process is killed.
     """
     import ctypes
     import signal
@@ -201,7 +205,10 @@ def _detaching() -> Callable[[], None]:
 
 
 def _forwarded_signals() -> list[int]:
-    """Return the signals to forward; the command also ignores those that this process was started to ignore."""
+    """Return the numbers of the signals to forward.
+
+    Signals that this process was started to ignore are excluded; the command ignores them, too.
+    """
     import signal
 
     known = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]

@@ -120,8 +120,7 @@ class _Loader:
         for name in described.submodules:
             if name in described.names and described.names[name].origin != table.IMPORT:
                 # If a function has the name of its submodule, import the submodule first. Otherwise a later import of
-                # the submodule
-                # would replace the function with the module.
+                # the submodule would replace the function with the module.
                 importlib.import_module(f"{described.name}.{name}")
                 setattr(module, name, value_of(described, name))
         if described.setup:

@@ -382,7 +382,7 @@ def _model(path: Path, arguments: Mapping[str, object]) -> Model:
 
 
 def _described(path: Path, arguments: Mapping[str, object]) -> str:
-    """Read a robot's file, and return the description as URDF or SDF.
+    """Read the file of a robot, and return the description as URDF.
 
     Raises:
         LinkwrightError: the file has errors.

@@ -62,8 +62,7 @@ def compile_filter(text: str) -> Callable[[Any], bool]:
     def fits(message: Any) -> bool:
         try:
             # `eval` is safe here, because the syntax tree was checked above: it contains no private names and only the
-            # listed
-            # functions.
+            # listed functions.
             return bool(eval(code, {"__builtins__": {}, **_NAMES, "m": message}))  # noqa: S307
         except Exception as error:  # noqa: BLE001 - the user's expression may raise anything
             raise fault(phrase("the filter failed: {error}", error=foreign(error))) from None
