@@ -69,7 +69,7 @@ def _content(descriptor: int, path: str | os.PathLike[str], at_most: int) -> byt
 
 
 def read_text(path: str | os.PathLike[str], encoding: str = "utf-8") -> str:
-    """Return the contents of a text file, with line ends converted to ``\\n``.
+    """Return the contents of a text file, with line ends converted to line feeds.
 
     Raises:
         OSError: see `read_file`; also if the file has `LARGEST_TEXT` bytes or more.

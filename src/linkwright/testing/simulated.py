@@ -239,8 +239,11 @@ class SteppedSimulation(SteppedGraph):
     """A simulated world and a graph whose time passes only in `advance`.
 
     >>> with SteppedSimulation("empty", "package://my_robot_description/urdf/mbot_gazebo.xacro") as test:
-    ...     odometry = test.record("/odom") ...     test.drive(0.5) ...     test.advance(2.5) ...     1.0 <
-    odometry.last.pose.pose.position.x < 1.25 True
+    ...     odometry = test.record("/odom")
+    ...     test.drive(0.5)
+    ...     test.advance(2.5)
+    ...     1.0 < odometry.last.pose.pose.position.x < 1.25
+    True
 
     Neither threads nor real time are used. The world moves for a `period`. Then the graph calls the timers whose time
     has come, publishes the time on ``/clock``, receives the messages of plugins and sensors, and runs the callbacks

@@ -25,7 +25,9 @@ class SteppedGraph:
     ...     node = test.create_node("talker")
     ...     publisher = node.create_publisher(String, "chatter", 10)
     ...     timer = node.create_timer(0.5, lambda: publisher.publish(String(data=f"Hello: {len(chatter)}")))
-    ...     test.advance(3600.0) ...     len(chatter), chatter.last.data (7200, 'Hello: 7199')
+    ...     test.advance(3600.0)
+    ...     len(chatter), chatter.last.data
+    (7200, 'Hello: 7199')
 
     A node that is written for rclpy is tested in the same way. After `init_rclpy`, rclpy's nodes are created in the
     test's graph, and the steps of the graph run their callbacks without spinning::
