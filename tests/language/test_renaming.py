@@ -217,6 +217,17 @@ def test_what_cannot_be_done_or_proved_is_refused(package: Package, file, before
     assert raised.value.diagnostics[0].code == code
 
 
+def test_a_file_outside_of_the_workspace_is_not_edited(package: Package, tmp_path_factory: pytest.TempPathFactory):
+    outside = tmp_path_factory.mktemp("outside") / "parts.xacro"
+    outside.write_text(PARTS, encoding="utf-8")
+    (package.folder / "urdf" / "parts.xacro").unlink()
+    main = package.folder / "urdf" / "arm.urdf.xacro"
+    main.write_text(MAIN.replace('filename="parts.xacro"', f'filename="{outside}"'))
+    with pytest.raises(LinkwrightError, match="is outside of the workspace"):
+        Package(package.folder).rename("urdf/arm.urdf.xacro", '<link name="', "trunk")
+    assert outside.read_text(encoding="utf-8") == PARTS
+
+
 def test_references_are_those_of_the_macro_s_own_parameter(package: Package):
     name = package.name("urdf/parts.xacro", 'params="name ')
     found = [(use.file.name, use.is_definition) for use in references(package.workspace, {}, name)]

@@ -14,7 +14,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, SourceText, Span, phrase, term
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, SourceText, Span, display_path, phrase, term
 from linkwright.language.definitions import NameKind
 from linkwright.language.grammar import root_of
 from linkwright.language.includes import real
@@ -226,6 +226,9 @@ class _Proof:
     def _pairs(self) -> Iterator[tuple[Path, Element, Element, str, str]]:
         """Yield each description before and after the edits: the file, the root elements and the texts."""
         for file in sorted({edit.file for edit in self.edits}):
+            if not self._project.contains(file):
+                why = phrase("'{file}' is outside of the workspace", file=display_path(str(file)))
+                raise _unproved(why, self._name)
             if file.name.endswith(DESCRIPTIONS):
                 self._add_entries(file)
         if not self._before:
@@ -299,7 +302,7 @@ class _Proof:
         source = element.source
         place = attribute_value_range(source.text, element.offset, key) if key else _text_range(element)
         written = "" if place is None else source.text[place[0] : place[1]]
-        file = Path(source.name)
+        file = real(source.name)
         if place is not None and "$" in written and written == self._name.name:
             return self._moved_edit(file, place, self._new)
         argument = self._passed_value(element, written, value)
@@ -322,7 +325,7 @@ class _Proof:
                 continue
             given = source.text[place[0] : place[1]]
             if given == value:
-                return Path(source.name), place
+                return real(source.name), place
             parameter = _ONE_NAME.fullmatch(given)
         return None
 

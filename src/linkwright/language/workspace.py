@@ -74,6 +74,10 @@ class Workspace:
         """Return what finds packages for a file."""
         return self._checker.finder(file)
 
+    def contains(self, file: Path) -> bool:
+        """Return whether a file is in a folder of the workspace."""
+        return any(file.is_relative_to(folder) for folder in self._folders)
+
     def text(self, file: Path, texts: Mapping[Path, str]) -> str | None:
         """Return the text of a file, which may be open; None if the file cannot be read."""
         if file in texts:
