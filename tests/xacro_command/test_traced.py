@@ -11,9 +11,9 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.xacro import arguments_of, expand, explain
 from linkwright.xacro.session import Inputs
 from linkwright.xacro.tracing.property_log import log_properties
-from tests.xacro_command.conftest import Write
 from tests.xacro.cases import Case, read_cases
 from tests.xacro.test_rules import CASES
+from tests.xacro_command.conftest import Write
 
 ERRORS = {
     f"{path.stem}: {case.title}": case
