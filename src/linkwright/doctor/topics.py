@@ -85,9 +85,10 @@ def _types(seen: Observation) -> Iterator[Diagnostic]:
 
 
 def _without_universal_subscribers(types: dict[str, list[EndpointInfo]]) -> dict[str, list[EndpointInfo]]:
-    """Return a topic's endpoints by type, without nodes that subscribe to all published types.
+    """Return a topic's endpoints by type, without the subscriptions of nodes that subscribe to all published types.
 
-    The result is empty if all subscribing nodes are such nodes.
+    Only a node that subscribes to more than one type counts as such a node. Its publishers remain. The result is empty
+    if no other node subscribes.
     """
     every = [endpoint for endpoints in types.values() for endpoint in endpoints]
     published = {endpoint.type_name for endpoint in every if endpoint.kind is EndpointKind.PUBLISHER}

@@ -95,7 +95,7 @@ class _Worker:
         return outcome
 
     def stop(self) -> None:
-        """Kill the process, even during a run."""
+        """Terminate the process, even during a run."""
         self._process.terminate()
 
     def end(self) -> str:

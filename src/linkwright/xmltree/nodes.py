@@ -64,7 +64,7 @@ class Text:
 
 
 class Comment:
-    """A comment; `data` is the text between the dashes."""
+    """A comment; `data` is the text between ``<!--`` and ``-->``."""
 
     __slots__ = ("data", "offset", "source")
 

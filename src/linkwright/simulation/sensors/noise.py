@@ -41,7 +41,7 @@ class NoiseSource:
 
     @property
     def silent(self) -> bool:
-        """Whether the noise never changes a value."""
+        """Whether the noise is of type ``none``."""
         return self._noise.type == "none"
 
     @property
