@@ -139,7 +139,7 @@ def _number(value: float | None) -> str:
 
 
 def _failures(examination: Examination) -> list[str]:
-    """Return Markdown list items on object sizes and classes that are often missed, and on classes that are confused."""
+    """Return Markdown list items on sizes and classes that are often missed, and on confused classes."""
     lines = []
     for name, objects, recall in examination.figures.recall_by_size:
         if objects and recall < _WEAK:
