@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.language.renaming import Renaming, name_at, references, rename
+from linkwright.language.renaming import Renaming, occurrence_at, references, rename
 from linkwright.language.workspace import Workspace
 from linkwright.xacro import expand
 
@@ -75,7 +75,7 @@ class Package:
         """Return the name that follows a text in a file."""
         path = self.folder / file
         text = path.read_text(encoding="utf-8")
-        found = name_at(text, path, text.index(before) + len(before) + 1)
+        found = occurrence_at(text, path, text.index(before) + len(before) + 1)
         assert found is not None
         return found
 
@@ -226,6 +226,27 @@ def test_a_file_outside_of_the_workspace_is_not_edited(package: Package, tmp_pat
     with pytest.raises(LinkwrightError, match="is outside of the workspace"):
         Package(package.folder).rename("urdf/arm.urdf.xacro", '<link name="', "trunk")
     assert outside.read_text(encoding="utf-8") == PARTS
+
+
+def test_a_material_is_renamed_where_it_is_defined_and_used(package: Package):
+    main = package.folder / "urdf" / "arm.urdf.xacro"
+    material = '  <material name="grey"><color rgba="0.5 0.5 0.5 1"/></material>\n  <link'
+    main.write_text(MAIN.replace("  <link", material, 1))
+    parts = package.folder / "urdf" / "parts.xacro"
+    parts.write_text(PARTS.replace("</geometry>", '</geometry><material name="grey"/>'))
+    texts = package.apply(package.rename("urdf/parts.xacro", '<material name="', "steel"))
+    assert '<material name="steel"/>' in texts["parts.xacro"]
+    assert '<material name="steel"><color' in texts["arm.urdf.xacro"]
+
+
+def test_a_file_with_chinese_text_and_windows_line_ends_is_edited_at_the_right_places(package: Package):
+    (package.folder / "config" / "arm.yaml").write_bytes(("# 机械臂🤖\n" + YAML).replace("\n", "\r\n").encode())
+    main = package.folder / "urdf" / "arm.urdf.xacro"
+    main.write_bytes(MAIN.replace("  <link", "  <!-- 底座🤖 -->\n  <link", 1).replace("\n", "\r\n").encode())
+    renaming = package.rename("urdf/arm.urdf.xacro", '<link name="', "trunk")
+    texts = {file: file.read_bytes().decode() for file in {edit.file for edit in renaming.edits}}
+    assert {texts[edit.file][edit.start : edit.end] for edit in renaming.edits} == {"base"}
+    assert {"arm.yaml", "arm.urdf.xacro"} <= {file.name for file in texts}
 
 
 def test_references_are_those_of_the_macro_s_own_parameter(package: Package):

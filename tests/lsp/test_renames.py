@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import asyncio
+
 import pytest
 from lsprotocol import types
 from pygls.exceptions import JsonRpcException
@@ -43,3 +45,17 @@ async def test_a_rename_that_would_join_two_links_is_refused_with_the_reason(edi
         await editor.client.text_document_rename_async(
             types.RenameParams(editor.document(FILE), at('<link name="b'), "upper")
         )
+
+
+async def test_a_rename_is_refused_or_for_the_text_that_it_was_made_for(editor):
+    editor.open(FILE)
+    asked = types.RenameParams(editor.document(FILE), at('<link name="b'), "trunk")
+    renaming = asyncio.ensure_future(editor.client.text_document_rename_async(asked))
+    await asyncio.sleep(0)  # the request is sent before the change
+    editor.change(FILE, "<!-- typed meanwhile -->\n" + MAIN)
+    [outcome] = await asyncio.gather(renaming, return_exceptions=True)
+    if isinstance(outcome, JsonRpcException):
+        assert "rename again" in str(outcome)
+    else:
+        versions = {change.text_document.uri: change.text_document.version for change in outcome.document_changes}
+        assert versions[editor.uri(FILE)] == 1

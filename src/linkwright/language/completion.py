@@ -14,20 +14,12 @@ from linkwright.diagnostics import Phrase
 from linkwright.language.cursor import Cursor, Spot, cursor_at
 from linkwright.language.definitions import NameDefinition, NameKind
 from linkwright.language.grammar import PREFIX, XACRO, root_of, rule_at
+from linkwright.language.occurrences import kinds_of_reference
 from linkwright.packages import PackageFinder
 from linkwright.schema import AttributeRule, ElementRule, describe_attribute, describe_element
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.macros import Parameter, parse_parameters
 
-_REFERENCES = {
-    ("parent", "link"): NameKind.LINK,
-    ("child", "link"): NameKind.LINK,
-    ("mimic", "joint"): NameKind.JOINT,
-    ("gazebo", "reference"): NameKind.LINK,
-    ("material", "name"): NameKind.MATERIAL,
-    ("xacro:call", "macro"): NameKind.MACRO,
-}
-"""Attributes whose values name something."""
 _CHOICES = {
     ("joint", "type"): ("revolute", "continuous", "prismatic", "fixed", "floating", "planar"),
     ("xacro:property", "scope"): ("parent", "global"),
@@ -215,11 +207,10 @@ def _values(
     key = (cursor.tags[-1], cursor.attribute.name)
     for choice in _CHOICES.get(key, ()):
         yield Completion(choice, ItemKind.VALUE, start)
-    kind = _REFERENCES.get(key)
-    if kind is not None:
+    for kind in kinds_of_reference(*key):
         for name in _of_kind(names, kind):
             yield Completion(name.name, ItemKind.NAME, start, name.detail)
-    elif cursor.attribute.name in ("filename", "file", "uri"):
+    if cursor.attribute.name in ("filename", "file", "uri"):
         yield from _paths(typed, cursor.offset, file, finder)
 
 

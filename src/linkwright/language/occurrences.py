@@ -42,6 +42,8 @@ _REFERENCES: dict[tuple[str, str], tuple[NameKind, ...]] = {
     ("end_effector", "parent_link"): _LINK,
     ("link_sphere_approximation", "link"): _LINK,
     ("passive_joint", "name"): _JOINT,
+    ("material", "name"): (NameKind.MATERIAL,),
+    ("xacro:call", "macro"): (NameKind.MACRO,),
 }
 """Element and attribute -> the kinds of names that the value may have; those of SRDF are among them."""
 _USERS_OF_JOINTS = frozenset({"transmission", "ros2_control", "group", "group_state"})
@@ -77,12 +79,7 @@ class Occurrence:
 
 
 def kinds_of_reference(tag: str, attribute: str) -> tuple[NameKind, ...]:
-    """Return the kinds of names that an attribute may refer to; empty for none.
-
-    The ``name`` of a joint in a transmission or in ``<ros2_control>`` counts as well, and a material's.
-    """
-    if attribute == "name":
-        return {"joint": _JOINT, "material": (NameKind.MATERIAL,), "passive_joint": _JOINT}.get(tag, ())
+    """Return the kinds of names that an attribute may refer to; empty for none."""
     return _REFERENCES.get((tag, attribute), ())
 
 
@@ -145,8 +142,6 @@ class _Scan:
             yield from self._property(given.get("name"), is_definition=tag == "xacro:property")
         elif tag == "xacro:arg":
             yield from self._named(NameKind.ARGUMENT, given.get("name"), is_definition=True)
-        elif tag == "xacro:call":
-            yield from self._named(NameKind.MACRO, given.get("macro"))
         elif tag.startswith(PREFIX) and tag not in XACRO:
             owner = tag.removeprefix(PREFIX).rpartition(".")[2]
             for attribute in given.values():
@@ -199,10 +194,11 @@ class _Scan:
             kind = NameKind.LINK if tag == "link" else NameKind.JOINT
             uses = self._is_srdf or not _USERS_OF_JOINTS.isdisjoint(self._tags)
             yield from self._named(kind, name, is_definition=not uses)
-        elif tag == "material" and (token.is_whole or "visual" in self._tags or self._tags[-1:] == ["robot"]):
-            yield from self._named(NameKind.MATERIAL, name, is_definition=not token.is_whole)
+        elif tag == "material" and not token.is_whole:
+            yield from self._named(NameKind.MATERIAL, name, is_definition=True)
+            return
         for attribute in given.values():
-            for kind in _REFERENCES.get((tag, attribute.name), ()):
+            for kind in kinds_of_reference(tag, attribute.name):
                 yield from self._named(kind, attribute)
 
     def _character_data(self, token: Token) -> Iterator[Occurrence]:

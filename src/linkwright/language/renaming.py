@@ -60,7 +60,7 @@ class Renaming:
     unchanged: tuple[Mention, ...] = ()
 
 
-def name_at(text: str, file: Path, offset: int) -> Occurrence | None:
+def occurrence_at(text: str, file: Path, offset: int) -> Occurrence | None:
     """Return the name at an offset that can be renamed; None if there is none."""
     if root_of(file) is SDF:  # the names of a model have scopes of their own
         return None
@@ -95,7 +95,7 @@ def rename(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new:
     Args:
         project: the workspace.
         texts: the texts of the open files.
-        name: the name, as `name_at` returns it.
+        name: the name, as `occurrence_at` returns it.
         new: the new name, as it is to be written at the place of the old one.
 
     Raises:
@@ -113,10 +113,10 @@ def rename(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new:
     proof.edits.update(Edit(seed.file, seed.start, seed.end, new) for seed in seeds)
     if name.kind not in _OF_ROBOT:
         if name.kind is NameKind.ARGUMENT:
-            proof.rename_argument(new)
-        proof.check_equal(name)
+            proof.rename_argument()
+        proof.check_equal()
         return Renaming(tuple(sorted(proof.edits)))
-    names = proof.follow(name)
+    names = proof.follow()
     return Renaming(tuple(sorted(proof.edits)), names, proof.unchanged)
 
 
@@ -192,13 +192,13 @@ class _Proof:
         overlay = Overlay({str(path): text for path, text in texts.items()})
         return expand(entry, values, packages=self._project.finder(entry), overlay=overlay)
 
-    def rename_argument(self, new: str) -> None:
+    def rename_argument(self) -> None:
         """Rename the argument in the calls of the descriptions, too.
 
         Raises:
             LinkwrightError: LANG104, a caller passes the argument by a name that is not written in the call.
         """
-        old = self._name.name
+        old, new = self._name.name, self._new
         passed = re.compile(rf"(?<!\w){re.escape(old)}(?=:=)|(?<=['\"]){re.escape(old)}(?=['\"]\s*:)")
         for entry in self._entries:
             for values, span in self._project.calls(entry):
@@ -246,7 +246,7 @@ class _Proof:
                 ) from None
             yield entry, root, after.document.root, text, str(after)
 
-    def check_equal(self, name: Occurrence) -> None:
+    def check_equal(self) -> None:
         """Compare the expansions, which must be equal.
 
         Raises:
@@ -254,9 +254,9 @@ class _Proof:
         """
         for entry, _, _, before, after in self._pairs():
             if before != after:
-                raise _unproved(phrase("the robot of '{file}' would change", file=entry.name), name)
+                raise _unproved(phrase("the robot of '{file}' would change", file=entry.name), self._name)
 
-    def follow(self, name: Occurrence) -> dict[str, str]:
+    def follow(self) -> dict[str, str]:
         """Extend the edits until all references have their new names, and return the names that change.
 
         Raises:
@@ -274,16 +274,16 @@ class _Proof:
                             first=names[kind, old],
                             second=new,
                         )
-                        raise _unproved(message, name)
+                        raise _unproved(message, self._name)
             if not names:
-                raise _unproved(phrase("no link, joint or material takes its name from this place"), name)
+                raise _unproved(phrase("no link, joint or material takes its name from this place"), self._name)
             more = {edit for before, after in trees for edit in self._stale(before, after, names)}
             more |= self._elsewhere(names)
             if more <= self.edits:
                 self._check_names(trees, names)
                 return {old: new for (_, old), new in names.items()}
             self.edits |= more
-        raise _unproved(phrase("some references keep the old name"), name)
+        raise _unproved(phrase("some references keep the old name"), self._name)
 
     def _stale(self, before: Element, after: Element, names: Mapping[tuple[NameKind, str], str]) -> Iterator[Edit]:
         """Yield the edits for references in an expansion that still have an old name."""
@@ -405,21 +405,28 @@ def _call_range(text: str, span: Span) -> tuple[int, int]:
 
 
 def _changed_definitions(before: Element, after: Element, name: Occurrence) -> Iterator[tuple[NameKind, str, str]]:
-    for tag, kind in (("link", NameKind.LINK), ("joint", NameKind.JOINT), ("material", NameKind.MATERIAL)):
-        pairs = list(zip(before.walk(), after.walk(), strict=False)) if tag == "material" else []
-        olds, news = [*before.elements(tag)], [*after.elements(tag)]
-        if len(olds) != len(news):
+    """Yield the kind, the old and the new name of each link, joint and material whose name differs."""
+    for tag, kind in (("link", NameKind.LINK), ("joint", NameKind.JOINT)):
+        if len([*before.elements(tag)]) != len([*after.elements(tag)]):
             raise _unproved(phrase("the robot would have another number of {kind}s", kind=term(kind.value)), name)
-        pairs = pairs or [*zip(olds, news, strict=True)]
-        for old, new in pairs:
-            if old.tag == new.tag == tag and old.attributes.get("name") != new.attributes.get("name"):
-                yield kind, old.attributes.get("name", ""), new.attributes.get("name", "")
+        for old, new in zip(before.elements(tag), after.elements(tag), strict=True):
+            yield from _changed_name(kind, old, new)
+    for old, new in zip(before.walk(), after.walk(), strict=False):  # a visual may define its material
+        if old.tag == new.tag == "material":
+            yield from _changed_name(NameKind.MATERIAL, old, new)
+
+
+def _changed_name(kind: NameKind, old: Element, new: Element) -> Iterator[tuple[NameKind, str, str]]:
+    names = old.attributes.get("name", ""), new.attributes.get("name", "")
+    if names[0] != names[1]:
+        yield (kind, *names)
 
 
 def _references_of(element: Element) -> Iterator[tuple[tuple[NameKind, ...], str]]:
     """Yield the attributes of an element (or an empty name for its text) that name something, with the kinds."""
     for key in element.attributes:
-        kinds = kinds_of_reference(element.tag, key)
+        # A joint's name is a use in a transmission; where it defines the joint, it is the new name already.
+        kinds = (NameKind.JOINT,) if (element.tag, key) == ("joint", "name") else kinds_of_reference(element.tag, key)
         if kinds:
             yield kinds, key
     kinds = kinds_of_text(element.tag)

@@ -14,10 +14,8 @@ from linkwright.diagnostics.translation import localized
 from linkwright.language.includes import real
 from linkwright.language.mentions import Mention
 from linkwright.language.occurrences import Occurrence
-from linkwright.language.renaming import Edit, name_at, references, rename
+from linkwright.language.renaming import Edit, occurrence_at, references, rename
 from linkwright.lsp.server import LinkwrightServer
-
-_MOST_SHOWN = 5
 
 
 def document_edits(server: LinkwrightServer, edits: Iterable[Edit]) -> types.WorkspaceEdit:
@@ -38,10 +36,16 @@ def document_edits(server: LinkwrightServer, edits: Iterable[Edit]) -> types.Wor
     return types.WorkspaceEdit(document_changes=changes)
 
 
-def _unchanged(mentions: Iterable[Mention]) -> str:
-    places = [f"{mention.file.name} ({mention.name})" for mention in dict.fromkeys(mentions)]
-    shown = joined(places[:_MOST_SHOWN], ", ")
-    return localized(phrase("not renamed, because the file does not tell what is meant: {places}", places=shown))
+def _unchanged(server: LinkwrightServer, mentions: Iterable[Mention]) -> str:
+    """Return the text of a message that lists the mentions, each with its file and line."""
+    places = []
+    for mention in dict.fromkeys(mentions):
+        positions = server.positions(mention.file)
+        line = 0 if positions is None else positions.position(mention.start).line + 1
+        places.append(f"{mention.file.name}:{line} ({mention.name})")
+    return localized(
+        phrase("not renamed, because the file does not tell what is meant: {places}", places=joined(places))
+    )
 
 
 def add_requests(server: LinkwrightServer) -> None:
@@ -53,7 +57,7 @@ def add_requests(server: LinkwrightServer) -> None:
         path, positions = server.text(document)
         if positions is None or server.project is None:
             return {}, None
-        return server.texts(), name_at(positions.text, real(path), positions.offset(position))
+        return server.texts(), occurrence_at(positions.text, real(path), positions.offset(position))
 
     @server.feature(types.TEXT_DOCUMENT_REFERENCES)
     async def references_request(server: LinkwrightServer, asked: types.ReferenceParams) -> list[types.Location] | None:
@@ -90,7 +94,10 @@ def add_requests(server: LinkwrightServer) -> None:
         except LinkwrightError as error:
             message = "\n".join(localized(diagnostic.message) for diagnostic in error.diagnostics)
             raise JsonRpcException(message, code=int(types.LSPErrorCodes.RequestFailed)) from None
+        if server.texts() != texts:  # the offsets of the edits are those of the former texts
+            message = localized(phrase("a text has changed meanwhile; rename again"))
+            raise JsonRpcException(message, code=int(types.LSPErrorCodes.ContentModified))
         if renaming.unchanged:
-            shown = types.ShowMessageParams(types.MessageType.Info, _unchanged(renaming.unchanged))
+            shown = types.ShowMessageParams(types.MessageType.Info, _unchanged(server, renaming.unchanged))
             server.window_show_message(shown)
         return document_edits(server, renaming.edits)
