@@ -7,10 +7,14 @@ from pathlib import Path
 from hypothesis import given
 from hypothesis import strategies as st
 
+from linkwright.language.colors import colors_in
 from linkwright.language.completion import complete
 from linkwright.language.definitions import definitions_in
+from linkwright.language.highlighting import highlights_in
 from linkwright.language.hover import definitions_at, explain_at
+from linkwright.language.links import file_references
 from linkwright.lsp.positions import TextPositions
+from linkwright.lsp.requests.navigation import uses_in_file
 from linkwright.lsp.requests.texts import folds, format_edits, linked_tags, selections, symbols
 from linkwright.packages import PackageFinder
 
@@ -41,6 +45,11 @@ def test_no_state_of_a_text_is_too_much(cut, name):
         assert outer.start <= inner.start
         assert inner.end <= outer.end
         selection = selection.parent
+    ends = [0, *(highlight.end for highlight in highlights_in(text, file))]
+    assert ends == sorted(set(ends))
+    assert all(0 <= color.start < color.end <= len(text) for color in colors_in(text))
+    assert all(text[link.start : link.end] for link in file_references(text, file, FINDER))
+    assert all(use.start <= use.end <= len(text) for use in uses_in_file(text, file, offset))
     symbols(positions)
     linked_tags(positions, place)
     format_edits(positions, file)

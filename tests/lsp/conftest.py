@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import sys
 from collections.abc import AsyncIterator, Sequence
+from contextlib import asynccontextmanager
 from pathlib import Path
 
 import pytest
@@ -119,18 +120,30 @@ def package(tmp_path: Path) -> Path:
     return folder
 
 
-@pytest_asyncio.fixture
-async def editor(package: Path) -> AsyncIterator[Editor]:
+@asynccontextmanager
+async def connected(package: Path, capabilities: types.ClientCapabilities) -> AsyncIterator[Editor]:
+    """Start the language server for an editor with some capabilities that has opened a package."""
     client = LanguageClient("test", "1")
     editor = Editor(client, package)
     await client.start_io(sys.executable, "-m", "linkwright", "lsp")
     await client.initialize_async(
-        types.InitializeParams(
-            types.ClientCapabilities(), workspace_folders=[types.WorkspaceFolder(package.as_uri(), package.name)]
-        )
+        types.InitializeParams(capabilities, workspace_folders=[types.WorkspaceFolder(package.as_uri(), package.name)])
     )
     client.initialized(types.InitializedParams())
     yield editor
     await client.shutdown_async(None)
     client.exit(None)
     await client.stop()
+
+
+@pytest_asyncio.fixture
+async def editor(package: Path) -> AsyncIterator[Editor]:
+    async with connected(package, types.ClientCapabilities()) as editor:
+        yield editor
+
+
+@pytest_asyncio.fixture
+async def editor_with_commands(package: Path) -> AsyncIterator[Editor]:
+    commands = ["linkwright.showReferences", "linkwright.openInPage"]
+    async with connected(package, types.ClientCapabilities(experimental={"commands": commands})) as editor:
+        yield editor

@@ -15,16 +15,16 @@ from linkwright.language.cursor import Cursor, Spot, cursor_at
 from linkwright.language.definitions import NameDefinition, NameKind
 from linkwright.language.grammar import PREFIX, XACRO, root_of, rule_at
 from linkwright.language.occurrences import kinds_of_reference
+from linkwright.language.parameters import called_macro, macro_parameters
 from linkwright.packages import PackageFinder
 from linkwright.schema import AttributeRule, ElementRule, describe_attribute, describe_element
-from linkwright.xacro.faults import Fault
-from linkwright.xacro.macros import Parameter, parse_parameters
+from linkwright.xacro.macros import Parameter
 
 _CHOICES = {
     ("joint", "type"): ("revolute", "continuous", "prismatic", "fixed", "floating", "planar"),
     ("xacro:property", "scope"): ("parent", "global"),
 }
-_FUNCTIONS = tuple(
+FUNCTIONS = tuple(
     sorted(
         {name for name in dir(math) if name[0] != "_"} | {"abs", "len", "max", "min", "round", "str", "int", "float"}
     )
@@ -132,7 +132,7 @@ def _element_snippet(rule: ElementRule) -> str:
 
 
 def _call_snippet(macro: NameDefinition) -> str:
-    parameters = _parameters(macro)
+    parameters = macro_parameters(macro)
     written = "".join(
         f' {parameter.name}="${{{number}}}"'
         for number, parameter in enumerate((each for each in parameters if _is_required(each)), 1)
@@ -145,13 +145,6 @@ def _is_required(parameter: Parameter) -> bool:
     return not parameter.is_block and parameter.default is None and not parameter.forward
 
 
-def _parameters(macro: NameDefinition) -> tuple[Parameter, ...]:
-    try:
-        return tuple(parse_parameters(macro.detail))
-    except Fault:  # they are being typed
-        return ()
-
-
 def _attributes(cursor: Cursor, root: ElementRule, names: Sequence[NameDefinition]) -> Iterator[Completion]:
     tag = cursor.tags[-1]
     start = cursor.offset - len(cursor.typed)
@@ -159,8 +152,8 @@ def _attributes(cursor: Cursor, root: ElementRule, names: Sequence[NameDefinitio
     given.discard(cursor.attribute.name if cursor.attribute else "")
     suffix = "" if cursor.attribute is not None and cursor.attribute.value is not None else '="$1"$0'
     if tag.startswith(PREFIX) and tag not in XACRO:
-        macro = next((each for each in _of_kind(names, NameKind.MACRO) if PREFIX + each.name == tag), None)
-        for parameter in () if macro is None else _parameters(macro):
+        macro = called_macro(tag, names)
+        for parameter in () if macro is None else macro_parameters(macro):
             if not parameter.is_block and parameter.name not in given:
                 yield Completion(parameter.name, ItemKind.ATTRIBUTE, start, "", "", parameter.name + suffix)
         return
@@ -184,7 +177,7 @@ def _values(
         begin = cursor.offset - len(cursor.word)
         for name in _of_kind(names, NameKind.PROPERTY):
             yield Completion(name.name, ItemKind.PROPERTY, begin, name.detail)
-        for function in _FUNCTIONS:
+        for function in FUNCTIONS:
             yield Completion(function, ItemKind.FUNCTION, begin, _purpose(function))
         return
     substitution = cursor.substitution

@@ -116,6 +116,14 @@ class Workspace:
         """
         return [name for other in self.index.related(file, texts) for name in self._names_in(other, texts)]
 
+    def all_names(self, texts: Mapping[Path, str]) -> list[NameDefinition]:
+        """Return the names that all descriptions of the workspace define.
+
+        Args:
+            texts: the texts of the open files.
+        """
+        return [name for file in dict.fromkeys((*self.index.files, *texts)) for name in self._names_in(file, texts)]
+
     def _names_in(self, file: Path, texts: Mapping[Path, str]) -> tuple[NameDefinition, ...]:
         text = texts.get(file)
         if text is not None:

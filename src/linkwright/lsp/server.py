@@ -13,12 +13,15 @@ from urllib.parse import unquote, urlsplit
 from urllib.request import url2pathname
 
 from lsprotocol import types
+from pygls.exceptions import JsonRpcException
 from pygls.lsp.server import LanguageServer
 
 from linkwright._version import __version__
-from linkwright.diagnostics import LinkwrightError
+from linkwright.diagnostics import LinkwrightError, phrase
+from linkwright.diagnostics.translation import localized
 from linkwright.language.definitions import NameDefinition
 from linkwright.language.includes import real
+from linkwright.language.values import ValuedText, values_in
 from linkwright.language.workspace import Workspace
 from linkwright.lint.targets import XML_FILES
 from linkwright.lsp.findings import as_diagnostics
@@ -45,6 +48,7 @@ class LinkwrightServer(LanguageServer):
         self.project: Workspace | None = None
         self._uris: dict[Path, str] = {}
         self._files: dict[Path, tuple[int, TextPositions]] = {}
+        self._values: dict[Path, tuple[dict[Path, str], list[ValuedText]]] = {}
         self._changed: dict[Path, None] = {}
         self._has_changes = asyncio.Event()
         self._is_indexed = asyncio.Event()
@@ -83,6 +87,7 @@ class LinkwrightServer(LanguageServer):
         path = path_of(uri)
         if path is not None and self.project is not None:
             self.project.file_saved(real(path))
+            self._values.clear()
             self.file_changed(uri)
 
     def text(self, document: types.TextDocumentIdentifier) -> tuple[Path, TextPositions | None]:
@@ -98,6 +103,36 @@ class LinkwrightServer(LanguageServer):
             return []
         await self.when_indexed()
         return self.project.names(real(path), self.texts())
+
+    async def values(self, path: Path) -> list[ValuedText]:
+        """Return the values of the expressions in a file, once the folders have been searched."""
+        project, file, texts = self.project, real(path), self.texts()
+        if project is None:
+            return []
+        await self.when_indexed()
+        known = self._values.get(file)
+        if known is None or known[0] != texts:
+            known = texts, await self.in_thread(partial(values_in, project, texts, file))
+            self._values = {file: known}
+        return known[1]
+
+    def check_unchanged(self, path: Path, positions: TextPositions) -> None:
+        """Check that a text has not changed during a request.
+
+        Raises:
+            JsonRpcException: ContentModified, the text has changed, so offsets in it are of no use.
+        """
+        current = self.positions(path)
+        if current is None or current.text != positions.text:
+            message = localized(phrase("a text has changed meanwhile"))
+            raise JsonRpcException(message, code=int(types.LSPErrorCodes.ContentModified))
+
+    @property
+    def client_commands(self) -> frozenset[str]:
+        """The commands that the client offers to lenses, from the capability ``experimental.commands``."""
+        experimental = self.client_capabilities.experimental
+        commands = experimental.get("commands") if isinstance(experimental, dict) else None
+        return frozenset(map(str, commands)) if isinstance(commands, list) else frozenset()
 
     async def when_indexed(self) -> None:
         """Wait until the folders have been searched."""

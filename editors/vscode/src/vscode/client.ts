@@ -1,6 +1,7 @@
 import type { FileSystemWatcher, LogOutputChannel } from "vscode";
-import { LanguageClient } from "vscode-languageclient/node";
+import { LanguageClient, type StaticFeature } from "vscode-languageclient/node";
 import { type Command, environment, extended } from "../server/command.js";
+import { SHOW_REFERENCES } from "./references.js";
 import { DOCUMENTS } from "../server/documents.js";
 
 /** What clients share. */
@@ -14,10 +15,22 @@ export interface Shared {
 export function makeClient(command: Command, cwd: string | undefined, { output, watcher }: Shared): LanguageClient {
   const { program, args } = extended(command, "lsp");
   const options = { env: environment(), ...(cwd === undefined ? {} : { cwd }) };
-  return new LanguageClient(
+  const client = new LanguageClient(
     "linkwright", // the prefix of the setting linkwright.trace.server
     "Linkwright",
     { command: program, args: [...args], options },
     { documentSelector: DOCUMENTS, outputChannel: output, synchronize: { fileEvents: watcher } },
   );
+  client.registerFeature(lensCommands);
+  return client;
 }
+
+/** Announces the commands of code lenses, which the server offers to clients that have them. */
+const lensCommands: StaticFeature = {
+  fillClientCapabilities: (capabilities) => {
+    capabilities.experimental = { commands: [SHOW_REFERENCES, "linkwright.openInPage"] };
+  },
+  initialize: () => undefined,
+  getState: () => ({ kind: "static" }),
+  clear: () => undefined,
+};

@@ -1,8 +1,9 @@
-import { commands, type ExtensionContext, languages, type TextDocument, type Uri, window, workspace } from "vscode";
+import { commands, type ExtensionContext, languages, type TextDocument, Uri, window, workspace } from "vscode";
 import { Views } from "../page/views.js";
 import { DOCUMENTS, WATCHED } from "../server/documents.js";
 import { offerInstallation } from "./installation.js";
 import { selectedPythonChanged } from "./python.js";
+import { SHOW_REFERENCES, showReferences } from "./references.js";
 import { showRobot } from "./robot.js";
 import { Server } from "./server.js";
 import { INTERPRETER } from "./settings.js";
@@ -22,7 +23,10 @@ export function activate(context: ExtensionContext): void {
     output,
     watcher,
     views,
-    commands.registerCommand("linkwright.openInPage", (uri?: Uri) => showRobot(running, views, uri)),
+    commands.registerCommand("linkwright.openInPage", (uri?: Uri | string) =>
+      showRobot(running, views, typeof uri === "string" ? Uri.parse(uri, true) : uri), // a code lens passes a text
+    ),
+    commands.registerCommand(SHOW_REFERENCES, showReferences),
     commands.registerCommand("linkwright.restartServer", () => running.restart()),
     commands.registerCommand("linkwright.showOutput", () => output.show()),
   );

@@ -12,6 +12,9 @@ from linkwright.diagnostics.translation import localized
 from linkwright.language.completion import Completion, ItemKind, complete
 from linkwright.language.definitions import NameDefinition
 from linkwright.language.hover import definitions_at, explain_at
+from linkwright.language.includes import real
+from linkwright.language.links import file_references
+from linkwright.language.values import ValuedText, described_values, value_at
 from linkwright.language.workspace import Workspace
 from linkwright.lsp.positions import TextOf, TextPositions
 from linkwright.lsp.server import LinkwrightServer
@@ -69,11 +72,21 @@ def _item(item: Completion, positions: TextPositions, offset: int, *, takes_snip
 
 
 def hover(
-    path: Path, names: Sequence[NameDefinition], positions: TextPositions, place: types.Position
+    path: Path,
+    names: Sequence[NameDefinition],
+    values: Sequence[ValuedText],
+    positions: TextPositions,
+    place: types.Position,
 ) -> types.Hover | None:
-    """Return the explanation of a place; None if there is none."""
-    found = explain_at(positions.text, positions.offset(place), path, names)
-    return None if found is None else types.Hover(_markdown(found.text), positions.range(found.start, found.end))
+    """Return the explanation of a place, with the values of the expression there, or None."""
+    offset = positions.offset(place)
+    found = explain_at(positions.text, offset, path, names)
+    valued = value_at(values, offset)
+    if valued is None:
+        return None if found is None else types.Hover(_markdown(found.text), positions.range(found.start, found.end))
+    value = described_values(valued, positions.text[valued.start : valued.end])
+    text = value if found is None else f"{localized(found.text)}\n\n{value}"
+    return types.Hover(_markdown(text), positions.range(valued.start, valued.end))
 
 
 def definitions(
@@ -120,13 +133,28 @@ def add_requests(server: LinkwrightServer) -> None:
     @server.feature(types.TEXT_DOCUMENT_HOVER)
     async def hover_request(server: LinkwrightServer, asked: types.HoverParams) -> types.Hover | None:
         path, positions = server.text(asked.text_document)
-        return None if positions is None else hover(path, await server.names(path), positions, asked.position)
+        if positions is None:
+            return None
+        known, values = await server.names(path), await server.values(path)
+        server.check_unchanged(path, positions)
+        return hover(path, known, values, positions, asked.position)
 
     @server.feature(types.TEXT_DOCUMENT_DEFINITION)
     async def definition_request(
         server: LinkwrightServer, asked: types.DefinitionParams
     ) -> list[types.Location] | None:
         path, positions = server.text(asked.text_document)
-        if positions is None:
+        if positions is None or server.project is None:
             return None
-        return definitions(await server.names(path), positions, asked.position, server.positions, server.uri_of)
+        known, values = await server.names(path), await server.values(path)
+        server.check_unchanged(path, positions)
+        found = definitions(known, positions, asked.position, server.positions, server.uri_of)
+        offset, finder = positions.offset(asked.position), server.project.finder(real(path))
+        links = () if found else file_references(positions.text, path, finder, values)
+        top = types.Range(types.Position(0, 0), types.Position(0, 0))
+        found += [
+            types.Location(server.uri_of(link.file), top)
+            for link in links
+            if link.start <= offset <= link.end and link.file.is_file()
+        ]
+        return found

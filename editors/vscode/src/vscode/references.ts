@@ -1,0 +1,28 @@
+import { commands, Location, Position, Range, Uri } from "vscode";
+
+/** The command of the code lens that counts the uses of a name. */
+export const SHOW_REFERENCES = "linkwright.showReferences";
+
+interface ProtocolPosition {
+  readonly line: number;
+  readonly character: number;
+}
+
+interface ProtocolLocation {
+  readonly uri: string;
+  readonly range: { readonly start: ProtocolPosition; readonly end: ProtocolPosition };
+}
+
+/** Show locations of the language server in VS Code's list of references. */
+export async function showReferences(uri: string, place: ProtocolPosition, locations: readonly ProtocolLocation[]): Promise<void> {
+  await commands.executeCommand(
+    "editor.action.showReferences",
+    Uri.parse(uri, true),
+    position(place),
+    locations.map(({ uri: file, range }) => new Location(Uri.parse(file, true), new Range(position(range.start), position(range.end)))),
+  );
+}
+
+function position({ line, character }: ProtocolPosition): Position {
+  return new Position(line, character);
+}

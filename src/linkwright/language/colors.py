@@ -1,0 +1,54 @@
+"""The colours in an XML text: ``rgba`` of URDF, and the colours of SDF's materials and lights."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from linkwright.xmltree.tokens import Kind, tokens
+
+_TAGS = frozenset({"ambient", "diffuse", "specular", "emissive", "background", "grid_color"})
+_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_COLOR = re.compile(rf"\s*({_NUMBER})\s+({_NUMBER})\s+({_NUMBER})(?:\s+({_NUMBER}))?\s*")
+
+
+class WrittenColor(NamedTuple):
+    """A colour in a text.
+
+    Attributes:
+        start: the character offset of the numbers.
+        end: the offset after the last number.
+        rgba: red, green, blue and alpha, from 0 to 1.
+    """
+
+    start: int
+    end: int
+    rgba: tuple[float, float, float, float]
+
+
+def colors_in(text: str) -> Iterator[WrittenColor]:
+    """Yield the colours that are written as numbers, in the order of the text."""
+    tag = ""
+    for token in tokens(text):
+        if token.kind is Kind.START:
+            tag = token.name
+            for attribute in token.attributes():
+                if attribute.name in ("rgba", "rgb"):
+                    yield from _color(attribute.value or "", attribute.value_start)
+        elif token.kind is Kind.TEXT and tag in _TAGS:
+            yield from _color(token.text, token.start)
+
+
+def written_color(rgba: tuple[float, float, float, float], *, with_alpha: bool) -> str:
+    """Return the numbers of a colour, as a description writes them."""
+    return " ".join(f"{value:.4g}" for value in rgba[: 4 if with_alpha else 3])
+
+
+def _color(value: str, start: int) -> Iterator[WrittenColor]:
+    found = _COLOR.fullmatch(value)
+    if found is None:
+        return
+    red, green, blue, alpha = (float(number) for number in (*found.groups()[:3], found[4] or 1))
+    if all(0 <= part <= 1 for part in (red, green, blue, alpha)):
+        yield WrittenColor(start + found.start(1), start + found.end(4 if found[4] else 3), (red, green, blue, alpha))

@@ -1,0 +1,121 @@
+"""Semantic highlighting: the meaning of names in an XML text, and the expressions in attributes."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from enum import Enum
+from pathlib import Path
+from typing import NamedTuple
+
+from linkwright.language.completion import FUNCTIONS
+from linkwright.language.definitions import NameKind
+from linkwright.language.occurrences import occurrences_in
+from linkwright.xacro.expressions.template import TokenKind, tokenize
+from linkwright.xacro.faults import Fault
+from linkwright.xmltree.tokens import Kind, tokens
+
+_WORDS = re.compile(r"(?P<string>'[^']*'|\"[^\"]*\")|(?P<number>(?<![\w.])\d[\w.]*)|(?P<name>[A-Za-z_]\w*)")
+_KEYWORDS = frozenset({"and", "or", "not", "if", "else", "in", "is", "for", "True", "False", "None"})
+
+
+class HighlightKind(Enum):
+    """The kinds of highlighted ranges, with their names in the protocol of language servers."""
+
+    MACRO = "macro"
+    PARAMETER = "parameter"
+    PROPERTY = "variable"
+    ARGUMENT = "enumMember"
+    LINK = "class"
+    JOINT = "interface"
+    MATERIAL = "type"
+    FUNCTION = "function"
+    NUMBER = "number"
+    STRING = "string"
+    OPERATOR = "operator"
+    KEYWORD = "keyword"
+
+
+_KINDS = {
+    NameKind.MACRO: HighlightKind.MACRO,
+    NameKind.PARAMETER: HighlightKind.PARAMETER,
+    NameKind.PROPERTY: HighlightKind.PROPERTY,
+    NameKind.ARGUMENT: HighlightKind.ARGUMENT,
+    NameKind.LINK: HighlightKind.LINK,
+    NameKind.JOINT: HighlightKind.JOINT,
+    NameKind.MATERIAL: HighlightKind.MATERIAL,
+}
+
+
+class Highlight(NamedTuple):
+    """A range of a text with a meaning.
+
+    Attributes:
+        start: the character offset.
+        end: the offset after the last character.
+        kind: the meaning.
+        is_definition: whether the range defines a name.
+    """
+
+    start: int
+    end: int
+    kind: HighlightKind
+    is_definition: bool = False
+
+
+def highlights_in(text: str, file: Path) -> list[Highlight]:
+    """Return the highlights of a text, in its order and without overlaps."""
+    found: dict[int, Highlight] = {}
+    for name in occurrences_in(text, file):
+        if "$" not in name.name:
+            found.setdefault(name.start, Highlight(name.start, name.end, _KINDS[name.kind], name.is_definition))
+    for start, value in _values(text):
+        for highlight in _in_value(value, start):
+            found.setdefault(highlight.start, highlight)
+    result: list[Highlight] = []
+    for highlight in sorted(found.values(), key=lambda highlight: highlight.start):
+        if not result or result[-1].end <= highlight.start:
+            result.append(highlight)
+    return result
+
+
+def _values(text: str) -> Iterator[tuple[int, str]]:
+    """Yield the attribute values and texts with a dollar sign, each with its offset."""
+    for token in tokens(text):
+        if token.kind is Kind.TEXT and "$" in token.text:
+            yield token.start, token.text
+        for attribute in token.attributes():
+            if attribute.value and "$" in attribute.value:
+                yield attribute.value_start, attribute.value
+
+
+def _in_value(value: str, start: int) -> Iterator[Highlight]:
+    try:
+        parts = tokenize(value)
+    except Fault:  # it is being typed
+        return
+    for part in parts:
+        if part.kind is TokenKind.TEXT:
+            continue
+        begin, end = start + part.start, start + part.end
+        yield Highlight(begin, begin + 2, HighlightKind.OPERATOR)
+        if part.kind is TokenKind.EXPRESSION:
+            yield from _in_expression(part.text, begin + 2)
+        else:
+            command = re.match(r"\s*(\w+)", part.text)
+            if command is not None:
+                yield Highlight(begin + 2 + command.start(1), begin + 2 + command.end(1), HighlightKind.KEYWORD)
+        yield Highlight(end - 1, end, HighlightKind.OPERATOR)
+
+
+def _in_expression(source: str, start: int) -> Iterator[Highlight]:
+    for found in _WORDS.finditer(source):
+        begin, end = start + found.start(), start + found.end()
+        if found["string"]:
+            yield Highlight(begin, end, HighlightKind.STRING)
+        elif found["number"]:
+            yield Highlight(begin, end, HighlightKind.NUMBER)
+        elif found["name"] in _KEYWORDS:
+            yield Highlight(begin, end, HighlightKind.KEYWORD)
+        elif found["name"] in FUNCTIONS:
+            yield Highlight(begin, end, HighlightKind.FUNCTION)

@@ -1,0 +1,95 @@
+"""The files to which an XML text refers: includes, meshes, textures, and paths in other attributes and elements."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.language.values import ValuedText
+from linkwright.packages import PackageFinder
+from linkwright.xmltree.tokens import Kind, tokens
+
+_PATH_ATTRIBUTES = ("filename", "file", "uri", "path", "url")
+_PATH_TAGS = ("uri", "albedo_map", "normal_map", "filename", "parameters", "mesh")
+_SCHEME = re.compile(r"^(?:package|model|file)://")
+_FIND = re.compile(r"\$\(find(?:-pkg-share)?\s+([^()\s]+)\)")
+_LOADED = re.compile(r"load_yaml\(\s*(['\"])(?P<path>[^'\"]+)\1")
+
+
+class FileReference(NamedTuple):
+    """A file that a text refers to.
+
+    Attributes:
+        start: the character offset of the reference.
+        end: the offset after its last character.
+        file: the existing file or folder.
+    """
+
+    start: int
+    end: int
+    file: Path
+
+
+def file_references(
+    text: str, file: Path, finder: PackageFinder, values: Iterable[ValuedText] = ()
+) -> Iterator[FileReference]:
+    """Yield the references of a text to files that exist, in the order of the text.
+
+    Args:
+        text: the text, which may be incomplete.
+        file: its file, at which relative paths start.
+        finder: finds packages.
+        values: the values of the expressions in the text; a reference with expressions needs a single value.
+    """
+    known = {(value.start, value.end): value.values() for value in values}
+    tag = ""
+    for token in tokens(text):
+        if token.kind is Kind.START:
+            tag = token.name
+            for attribute in token.attributes():
+                is_path = attribute.name in _PATH_ATTRIBUTES
+                value = attribute.value or ""
+                yield from _found(value, attribute.value_start, file, finder, known, is_path=is_path)
+        elif token.kind is Kind.TEXT and token.text.strip():
+            value = token.text.strip()
+            start = token.start + token.text.index(value)
+            yield from _found(value, start, file, finder, known, is_path=tag in _PATH_TAGS)
+
+
+def _found(
+    value: str,
+    start: int,
+    file: Path,
+    finder: PackageFinder,
+    known: dict[tuple[int, int], list[str]],
+    *,
+    is_path: bool,
+) -> Iterator[FileReference]:
+    loaded = _LOADED.search(value)
+    begin, end = loaded.span("path") if loaded else (0, len(value))
+    written = value[begin:end]
+    if not (is_path or loaded or _SCHEME.match(written) or _FIND.match(written)):
+        return
+    values = known.get((start, start + len(value)), ())
+    address = _FIND.sub(lambda found: str(finder.find(found[1]) or found[0]), written)
+    if "$" in address and not loaded and len(values) == 1:
+        address = values[0].strip("'\"")
+    target = None if "$" in address else _target(address, file, finder)
+    if target is not None:
+        yield FileReference(start + begin, start + end, target)
+
+
+def _target(address: str, file: Path, finder: PackageFinder) -> Path | None:
+    """Return the file of an address, or None if there is none."""
+    if not address or "\n" in address or "*" in address:
+        return None
+    if address.startswith("model://"):
+        address = address.replace("model://", "package://", 1)
+    try:
+        path = finder.resolve(address, file.parent) if _SCHEME.match(address) else file.parent / address
+        return path if path.exists() else None
+    except (LinkwrightError, OSError, ValueError):
+        return None

@@ -1,0 +1,136 @@
+"""The values of the expressions in a file, in all descriptions that include it and for all their argument sets."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from linkwright.language.includes import real
+from linkwright.language.workspace import Workspace
+from linkwright.xacro.faults import Frame, frames
+from linkwright.xacro.session import Inputs
+from linkwright.xacro.tracing.values import Evaluation, evaluated_expressions
+from linkwright.xmltree import Overlay
+
+_MAX_EXPANSIONS = 12
+"""How many pairs of descriptions and argument sets are expanded for the values of one file."""
+_SHOWN_VALUES = 8
+_SHOWN_BESIDE = 3
+_SHOWN_CALLS = 2
+_SHOWN_NAMES = 6
+_MAX_LABEL = 60
+"""Characters of a macro call, or of a value beside the text."""
+
+
+@dataclass(slots=True)
+class ValuedText:
+    """A text with expressions, or an expression in it, and its values.
+
+    Attributes:
+        start: the character offset of the text.
+        end: the offset after its last character.
+        evaluations: the evaluations, each with the arguments of the description that differ from the defaults.
+    """
+
+    start: int
+    end: int
+    evaluations: list[tuple[Evaluation, Mapping[str, str]]] = field(default_factory=list)
+
+    def values(self) -> list[str]:
+        """Return the different values in Python notation, in the order of their first evaluations."""
+        return list(dict.fromkeys(evaluation.value for evaluation, _ in self.evaluations))
+
+
+def values_in(project: Workspace, texts: Mapping[Path, str], file: Path) -> list[ValuedText]:
+    """Return the texts with expressions in a file, in no particular order.
+
+    Args:
+        project: the workspace.
+        texts: the texts of the open files.
+        file: the file.
+    """
+    overlay = Overlay({str(path): text for path, text in texts.items()})
+    found: dict[tuple[int, int], ValuedText] = {}
+    calls = ((entry, values) for entry in project.index.entries(file, texts) for values, _ in project.calls(entry))
+    for _, (entry, values) in zip(range(_MAX_EXPANSIONS), calls, strict=False):
+        inputs = Inputs(str(entry), values, project.finder(entry), overlay=overlay)
+        for expression in evaluated_expressions(inputs):
+            if real(expression.file) == file:
+                key = expression.start, expression.end
+                text = found.setdefault(key, ValuedText(*key))
+                text.evaluations += [(evaluation, values) for evaluation in expression.evaluations]
+    return list(found.values())
+
+
+def value_at(texts: Sequence[ValuedText], offset: int) -> ValuedText | None:
+    """Return the smallest text with values around an offset, or None if there is none."""
+    around = [text for text in texts if text.start <= offset <= text.end and text.values()[0]]
+    return min(around, key=lambda text: text.end - text.start, default=None)
+
+
+def whole_texts(texts: Sequence[ValuedText]) -> Iterator[ValuedText]:
+    """Yield the texts that are not part of another text, in the order of the file.
+
+    Args:
+        texts: the texts of a file, as `values_in` returns them.
+    """
+    end = 0
+    for text in sorted(texts, key=lambda text: (text.start, -text.end)):
+        if text.start >= end:
+            end = text.end
+            yield text
+
+
+def short_values(text: ValuedText) -> str:
+    """Return the values of a text for the end of a line; an empty string if they say no more than the text itself."""
+    values = [value[1:-1] if value[:1] in ("'", '"') else value for value in text.values() if value]
+    shown = " | ".join(values[:_SHOWN_BESIDE]) + (" | ..." if len(values) > _SHOWN_BESIDE else "")
+    return _shortened(shown)
+
+
+def described_values(text: ValuedText, written: str) -> str:
+    """Return the values of a text, in Markdown, each with the macro calls or arguments that lead to it.
+
+    Args:
+        text: the text.
+        written: its characters.
+    """
+    places: dict[tuple[str, str], list[tuple[Evaluation, Mapping[str, str]]]] = {}
+    for evaluation, arguments in text.evaluations:
+        names = ", ".join(f"`{name}` = `{value}`" for name, value in evaluation.names[:_SHOWN_NAMES])
+        places.setdefault((evaluation.value, names), []).append((evaluation, arguments))
+    if len(places) == 1:
+        ((value, names),) = places
+        return f"`{written}` = `{value}`" + (f" ({names})" if names else "")
+    lines = [
+        f"- `{value}`{_origin(evaluations)}" + (f" ({names})" if names else "")
+        for (value, names), evaluations in [*places.items()][:_SHOWN_VALUES]
+    ]
+    if len(places) > _SHOWN_VALUES:
+        lines.append("- ...")
+    return f"`{written}`\n\n" + "\n".join(lines)
+
+
+def _origin(evaluations: Sequence[tuple[Evaluation, Mapping[str, str]]]) -> str:
+    """Return the macro calls of evaluations with the same value, and their arguments unless the defaults lead to it."""
+    calls = [call for call in dict.fromkeys(_call(evaluation.frame) for evaluation, _ in evaluations) if call]
+    origin = f" {', '.join(calls[:_SHOWN_CALLS])}" + (", ..." if len(calls) > _SHOWN_CALLS else "")
+    arguments = evaluations[0][1]
+    if arguments and all(values for _, values in evaluations):
+        origin += f" `{_shortened(' '.join(f'{name}:={value}' for name, value in arguments.items()))}`"
+    return "" if origin == " " else origin
+
+
+def _call(frame: Frame | None) -> str:
+    """Return the innermost macro call, such as ``wheel prefix="left"`` with its line; empty in the main file."""
+    call = next((frame for frame in frames(frame) if frame.macro is not None), None)
+    if call is None:
+        return ""
+    written = " ".join([call.macro or "", *(f'{name}="{value}"' for name, value in call.site.attributes.items())])
+    span = call.site.span()
+    return f"`{_shortened(written)}`" + ("" if span is None else f" ({Path(span.file).name}:{span.line})")
+
+
+def _shortened(text: str) -> str:
+    return text if len(text) <= _MAX_LABEL else f"{text[: _MAX_LABEL - 3]}..."

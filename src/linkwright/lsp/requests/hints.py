@@ -1,0 +1,117 @@
+"""Hints and lenses beside a text: values of expressions, block parameters of macro calls, and how often a name is used."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from lsprotocol import types
+
+from linkwright.diagnostics import counted, phrase
+from linkwright.diagnostics.translation import localized
+from linkwright.language.definitions import NameDefinition, NameKind
+from linkwright.language.includes import real
+from linkwright.language.occurrences import occurrences_in
+from linkwright.language.outline import Outline
+from linkwright.language.parameters import block_parameters
+from linkwright.language.renaming import references
+from linkwright.language.values import ValuedText, short_values, whole_texts
+from linkwright.lsp.positions import TextPositions
+from linkwright.lsp.server import LinkwrightServer
+
+SHOW_REFERENCES = "linkwright.showReferences"
+"""The command of lenses: it shows the locations of references. A client that has it registers it."""
+OPEN_IN_PAGE = "linkwright.openInPage"
+_COUNTED_KINDS = (NameKind.MACRO, NameKind.PROPERTY, NameKind.ARGUMENT)
+
+
+def value_hints(
+    positions: TextPositions, values: Sequence[ValuedText], start: int, end: int
+) -> Iterator[types.InlayHint]:
+    """Yield the values of the texts with expressions in a range, each after its text.
+
+    Args:
+        positions: the text.
+        values: the values of its expressions.
+        start: the character offset where the range starts.
+        end: the offset where the range ends.
+    """
+    for text in whole_texts(values):
+        written = positions.text[text.start : text.end]
+        label = short_values(text)
+        if start <= text.end <= end and label and label != written and not written.startswith("$(find"):
+            yield types.InlayHint(positions.position(text.end), f"= {label}", padding_left=True)
+
+
+def block_hints(
+    positions: TextPositions, names: Sequence[NameDefinition], start: int, end: int
+) -> Iterator[types.InlayHint]:
+    """Yield the names of the block parameters in the macro calls of a range, each before its element."""
+    for element in Outline.of(positions.text).all():
+        if start <= element.tag.start <= end:
+            for block, name in block_parameters(element, names):
+                place = positions.position(block.tag.start)
+                yield types.InlayHint(place, f"{name}:", types.InlayHintKind.Parameter, padding_right=True)
+
+
+def lenses(server: LinkwrightServer, path: Path, positions: TextPositions) -> list[types.CodeLens]:
+    """Return the lenses of a file: the uses of its macros, properties and arguments, and the page for its robot."""
+    found = []
+    for name in occurrences_in(positions.text, real(path)):
+        if name.is_definition and name.kind in _COUNTED_KINDS:
+            place = positions.range(name.start, name.end)
+            found.append(types.CodeLens(place, data={"uri": server.uri_of(path), "offset": name.start}))
+    for element in Outline.of(positions.text).elements:
+        if element.tag.name == "robot" and OPEN_IN_PAGE in server.client_commands:
+            title = localized(phrase("open in the page"))
+            place = positions.range(element.tag.start, element.tag.end)
+            found.append(types.CodeLens(place, types.Command(title, OPEN_IN_PAGE, arguments=[server.uri_of(path)])))
+    return found
+
+
+async def _counted(server: LinkwrightServer, lens: types.CodeLens) -> types.CodeLens:
+    """Return a lens with the number of uses of its name, and their locations."""
+    data: dict[str, Any] = lens.data if isinstance(lens.data, dict) else {}
+    path, positions = server.text(types.TextDocumentIdentifier(str(data.get("uri", ""))))
+    project = server.project
+    if positions is None or project is None:
+        return lens
+    await server.when_indexed()
+    texts, file = server.texts(), real(path)
+    name = next((name for name in occurrences_in(positions.text, file) if name.start == data.get("offset")), None)
+    uses = [] if name is None else await server.in_thread(lambda: references(project, texts, name))
+    locations = []
+    for use in uses:
+        place = None if use.is_definition else server.positions(use.file)
+        if place is not None:
+            locations.append(types.Location(server.uri_of(use.file), place.range(use.start, use.end)))
+    count = len(locations)
+    title = localized(counted("{count} use", "{count} uses", count) if count else phrase("no uses"))
+    is_known = SHOW_REFERENCES in server.client_commands
+    arguments = [server.uri_of(path), lens.range.start, locations] if is_known else None
+    lens.command = types.Command(title, SHOW_REFERENCES if is_known else "", arguments=arguments)
+    return lens
+
+
+def add_requests(server: LinkwrightServer) -> None:
+    """Add the requests of this module to a server."""
+
+    @server.feature(types.TEXT_DOCUMENT_INLAY_HINT)
+    async def inlay_hint(server: LinkwrightServer, asked: types.InlayHintParams) -> list[types.InlayHint] | None:
+        path, positions = server.text(asked.text_document)
+        if positions is None:
+            return None
+        names, values = await server.names(path), await server.values(path)
+        server.check_unchanged(path, positions)
+        start, end = positions.offset(asked.range.start), positions.offset(asked.range.end)
+        return [*value_hints(positions, values, start, end), *block_hints(positions, names, start, end)]
+
+    @server.feature(types.TEXT_DOCUMENT_CODE_LENS, types.CodeLensOptions(resolve_provider=True))
+    def code_lens(server: LinkwrightServer, asked: types.CodeLensParams) -> list[types.CodeLens] | None:
+        path, positions = server.text(asked.text_document)
+        return None if positions is None else lenses(server, path, positions)
+
+    @server.feature(types.CODE_LENS_RESOLVE)
+    async def resolve_lens(server: LinkwrightServer, lens: types.CodeLens) -> types.CodeLens:
+        return await _counted(server, lens)

@@ -1,0 +1,227 @@
+"""Navigation: links to files, names of the whole workspace, the uses of a name in its file, and macro calls."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from lsprotocol import types
+
+from linkwright.language.definitions import NameDefinition, NameKind
+from linkwright.language.includes import real
+from linkwright.language.links import file_references
+from linkwright.language.occurrences import Occurrence, occurrences_in
+from linkwright.language.renaming import occurrence_at, references
+from linkwright.lsp.positions import TextPositions
+from linkwright.lsp.server import LinkwrightServer, path_of
+
+_KINDS = {
+    NameKind.MACRO: types.SymbolKind.Function,
+    NameKind.PROPERTY: types.SymbolKind.Variable,
+    NameKind.ARGUMENT: types.SymbolKind.Variable,
+    NameKind.LINK: types.SymbolKind.Object,
+    NameKind.JOINT: types.SymbolKind.Interface,
+    NameKind.MATERIAL: types.SymbolKind.Constant,
+}
+_MAX_SYMBOLS = 500
+
+
+def matching(names: Iterable[NameDefinition], query: str) -> list[NameDefinition]:
+    """Return the names that contain the characters of a query in their order; those that contain the query come first.
+
+    Args:
+        names: the names.
+        query: the query; upper and lower case are equal. An empty query matches all names.
+    """
+    query = query.lower()
+
+    def matches(name: str) -> bool:
+        characters = iter(name)
+        return all(character in characters for character in query)
+
+    found = [(name.name.lower(), name) for name in names]
+    ranked = [(query not in lower, len(lower), number) for number, (lower, _) in enumerate(found) if matches(lower)]
+    return [found[number][1] for *_, number in sorted(ranked)]
+
+
+def _symbols(server: LinkwrightServer, names: Iterable[NameDefinition]) -> Iterator[types.WorkspaceSymbol]:
+    for name in names:
+        positions = server.positions(name.file)
+        if positions is not None and name.kind in _KINDS:
+            place = positions.range(name.start, name.start + len(name.name))
+            location = types.Location(server.uri_of(name.file), place)
+            yield types.WorkspaceSymbol(location, name.name, _KINDS[name.kind], container_name=name.file.name)
+
+
+def uses_in_file(text: str, path: Path, offset: int) -> list[Occurrence]:
+    """Return the occurrences of the name at an offset in the same file."""
+    name = occurrence_at(text, path, offset)
+    if name is None:
+        return []
+    is_parameter = name.kind is NameKind.PARAMETER
+    return [
+        other
+        for other in occurrences_in(text, path)
+        if (other.kind, other.name) == (name.kind, name.name) and (not is_parameter or other.owner == name.owner)
+    ]
+
+
+def _item(server: LinkwrightServer, macro: Occurrence) -> types.CallHierarchyItem | None:
+    positions = server.positions(macro.file)
+    if positions is None:
+        return None
+    place = positions.range(macro.start, macro.end)
+    uri = server.uri_of(macro.file)
+    return types.CallHierarchyItem(
+        macro.name, types.SymbolKind.Function, uri, place, place, detail=macro.file.name, data={"start": macro.start}
+    )
+
+
+def _file_item(server: LinkwrightServer, file: Path, positions: TextPositions) -> types.CallHierarchyItem:
+    """Return the item of a file, which calls macros outside of any macro."""
+    start = positions.range(0, 0)
+    return types.CallHierarchyItem(file.name, types.SymbolKind.File, server.uri_of(file), start, start)
+
+
+class _MacroCalls:
+    """The macros of the description of a file, and their calls.
+
+    Args:
+        server: the server.
+        texts: the texts of the open files.
+        item: the macro whose calls are searched.
+    """
+
+    def __init__(self, server: LinkwrightServer, texts: Mapping[Path, str], item: types.CallHierarchyItem) -> None:
+        self._server = server
+        path = path_of(item.uri)
+        self._file = real(path) if path is not None else Path()
+        data: Any = item.data
+        start = data.get("start") if isinstance(data, dict) else getattr(data, "start", None)
+        positions = server.positions(self._file)
+        text = "" if positions is None else positions.text
+        found = (name for name in occurrences_in(text, self._file) if name.kind is NameKind.MACRO)
+        self._macro = next((name for name in found if name.start == start), None)
+        self._uses = (
+            references(server.project, texts, self._macro) if self._macro is not None and server.project else []
+        )
+        self._texts = texts
+
+    def incoming(self) -> Iterator[types.CallHierarchyIncomingCall]:
+        """Yield the macros and files that call the macro."""
+        callers: dict[tuple[Path, str], list[Occurrence]] = {}
+        for use in self._uses:
+            if not use.is_definition:
+                callers.setdefault((use.file, use.owner), []).append(use)
+        for (file, owner), uses in callers.items():
+            positions = self._server.positions(file)
+            if positions is None:
+                continue
+            starts = [use for use in uses if not positions.text.startswith("</", _tag_start(positions.text, use.start))]
+            item = self._definition(owner, file) if owner else _file_item(self._server, file, positions)
+            if item is not None:
+                yield types.CallHierarchyIncomingCall(item, [positions.range(use.start, use.end) for use in starts])
+
+    def outgoing(self) -> Iterator[types.CallHierarchyOutgoingCall]:
+        """Yield the macros that the macro calls."""
+        positions = self._server.positions(self._file)
+        if self._macro is None or positions is None:
+            return
+        calls: dict[str, list[types.Range]] = {}
+        for use in occurrences_in(positions.text, self._file):
+            is_call = use.kind is NameKind.MACRO and not use.is_definition and use.owner == self._macro.name
+            if is_call and not positions.text.startswith("</", _tag_start(positions.text, use.start)):
+                calls.setdefault(use.name, []).append(positions.range(use.start, use.end))
+        for name, ranges in calls.items():
+            item = self._definition(name, self._file)
+            if item is not None:
+                yield types.CallHierarchyOutgoingCall(item, ranges)
+
+    def _definition(self, macro: str, file: Path) -> types.CallHierarchyItem | None:
+        project = self._server.project
+        for other in () if project is None else project.index.related(file, self._texts):
+            positions = self._server.positions(other)
+            for name in occurrences_in("" if positions is None else positions.text, other):
+                if name.kind is NameKind.MACRO and name.is_definition and name.name == macro:
+                    return _item(self._server, name)
+        return None
+
+
+def _tag_start(text: str, offset: int) -> int:
+    return text.rfind("<", 0, offset)
+
+
+def add_requests(server: LinkwrightServer) -> None:
+    """Add the requests of this module to a server."""
+
+    @server.feature(types.TEXT_DOCUMENT_DOCUMENT_LINK)
+    async def document_links(
+        server: LinkwrightServer, asked: types.DocumentLinkParams
+    ) -> list[types.DocumentLink] | None:
+        path, positions = server.text(asked.text_document)
+        if positions is None or server.project is None:
+            return None
+        values = await server.values(path)
+        server.check_unchanged(path, positions)
+        found = file_references(positions.text, path, server.project.finder(real(path)), values)
+        return [
+            types.DocumentLink(positions.range(link.start, link.end), server.uri_of(link.file))
+            for link in found
+            if link.file.is_file()
+        ]
+
+    @server.feature(types.WORKSPACE_SYMBOL)
+    async def workspace_symbol(
+        server: LinkwrightServer, asked: types.WorkspaceSymbolParams
+    ) -> list[types.WorkspaceSymbol] | None:
+        project, texts = server.project, server.texts()
+        if project is None:
+            return None
+        await server.when_indexed()
+        names = await server.in_thread(lambda: project.all_names(texts))
+        return [*_symbols(server, matching(names, asked.query)[:_MAX_SYMBOLS])]
+
+    @server.feature(types.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT)
+    def document_highlight(
+        server: LinkwrightServer, asked: types.DocumentHighlightParams
+    ) -> list[types.DocumentHighlight] | None:
+        path, positions = server.text(asked.text_document)
+        if positions is None:
+            return None
+        kinds = {True: types.DocumentHighlightKind.Write, False: types.DocumentHighlightKind.Read}
+        return [
+            types.DocumentHighlight(positions.range(name.start, name.end), kinds[name.is_definition])
+            for name in uses_in_file(positions.text, real(path), positions.offset(asked.position))
+        ]
+
+    @server.feature(types.TEXT_DOCUMENT_PREPARE_CALL_HIERARCHY)
+    async def prepare_call_hierarchy(
+        server: LinkwrightServer, asked: types.CallHierarchyPrepareParams
+    ) -> list[types.CallHierarchyItem] | None:
+        path, positions = server.text(asked.text_document)
+        project, texts = server.project, server.texts()
+        if positions is None or project is None:
+            return None
+        name = occurrence_at(positions.text, real(path), positions.offset(asked.position))
+        if name is None or name.kind is not NameKind.MACRO:
+            return None
+        await server.when_indexed()
+        found = await server.in_thread(lambda: references(project, texts, name))
+        return [item for use in found if use.is_definition and (item := _item(server, use)) is not None]
+
+    @server.feature(types.CALL_HIERARCHY_INCOMING_CALLS)
+    async def incoming_calls(
+        server: LinkwrightServer, asked: types.CallHierarchyIncomingCallsParams
+    ) -> list[types.CallHierarchyIncomingCall]:
+        await server.when_indexed()
+        texts = server.texts()
+        return await server.in_thread(lambda: [*_MacroCalls(server, texts, asked.item).incoming()])
+
+    @server.feature(types.CALL_HIERARCHY_OUTGOING_CALLS)
+    async def outgoing_calls(
+        server: LinkwrightServer, asked: types.CallHierarchyOutgoingCallsParams
+    ) -> list[types.CallHierarchyOutgoingCall]:
+        await server.when_indexed()
+        texts = server.texts()
+        return await server.in_thread(lambda: [*_MacroCalls(server, texts, asked.item).outgoing()])

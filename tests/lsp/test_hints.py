@@ -1,0 +1,189 @@
+"""Inlay hints, lenses, colours, semantic tokens, links, workspace symbols and macro calls, through the protocol."""
+
+from __future__ import annotations
+
+import asyncio
+
+import pytest
+from lsprotocol import types
+from pygls.exceptions import JsonRpcException
+
+from linkwright.language.highlighting import HighlightKind
+from tests.lsp.conftest import MAIN, PARTS
+
+FILE, PARTS_FILE = "urdf/arm.urdf.xacro", "urdf/parts.xacro"
+ALL = types.Range(types.Position(0, 0), types.Position(1000, 0))
+
+
+def at(text: str, place: str) -> types.Position:
+    """Return the position behind a part of a text."""
+    before = text[: text.index(place) + len(place)]
+    return types.Position(before.count("\n"), len(before) - before.rfind("\n") - 1)
+
+
+async def test_values_stand_beside_expressions(editor):
+    text = MAIN.replace("</robot>", '  <xacro:bar name="lower" length="${0.2 + 0.1}"/>\n</robot>')
+    editor.open(FILE, text)
+    editor.open(PARTS_FILE)
+    found = await editor.client.text_document_inlay_hint_async(types.InlayHintParams(editor.document(FILE), ALL))
+    assert [hint.label for hint in found] == ["= 0.30000000000000004"]
+    found = await editor.client.text_document_inlay_hint_async(types.InlayHintParams(editor.document(PARTS_FILE), ALL))
+    expected = [(2, "= upper | lower"), (3, "= upper_joint | lower_joint"), (5, "= upper | lower")]
+    assert [(hint.position.line, hint.label) for hint in found] == expected
+
+
+async def test_hints_are_those_of_the_visible_lines(editor):
+    editor.open(PARTS_FILE)
+    lines = types.Range(types.Position(3, 0), types.Position(4, 0))
+    found = await editor.client.text_document_inlay_hint_async(
+        types.InlayHintParams(editor.document(PARTS_FILE), lines)
+    )
+    assert [hint.position.line for hint in found] == [3]
+
+
+async def test_blocks_of_a_call_have_the_names_of_their_parameters(editor):
+    text = MAIN.replace(
+        "<link",
+        '<xacro:macro name="placed" params="n *pose **rest"><link name="${n}"/></xacro:macro>\n'
+        '  <xacro:placed n="a">\n    <origin xyz="0 0 0"/>\n    <visual/>\n  </xacro:placed>\n  <link',
+        1,
+    )
+    editor.open(FILE, text)
+    found = await editor.client.text_document_inlay_hint_async(types.InlayHintParams(editor.document(FILE), ALL))
+    assert [hint.label for hint in found if hint.kind is types.InlayHintKind.Parameter] == ["*pose:", "**rest:"]
+
+
+async def test_a_hover_lists_the_value_of_each_call(editor):
+    text = MAIN.replace("</robot>", '  <xacro:bar name="lower" length="${2 * 0.1}"/>\n</robot>')
+    editor.open(FILE, text)
+    editor.open(PARTS_FILE)
+
+    async def hover(name: str, place: types.Position) -> str:
+        found = await editor.client.text_document_hover_async(types.HoverParams(editor.document(name), place))
+        return found.contents.value
+
+    assert "`${2 * 0.1}` = `0.2`" in await hover(FILE, at(text, "${2 "))
+    values = await hover(PARTS_FILE, at(PARTS, "${na"))
+    assert '- `\'upper\'` `bar name="upper" length="0.4"` (arm.urdf.xacro:4)' in values
+    assert "- `'lower'` `bar name=\"lower\"" in values
+
+
+async def test_a_lens_counts_the_uses_of_a_macro(editor):
+    editor.open(PARTS_FILE)
+    (lens,) = await editor.client.text_document_code_lens_async(types.CodeLensParams(editor.document(PARTS_FILE)))
+    assert lens.range.start == at(PARTS, 'xacro:macro name="')
+    resolved = await editor.client.code_lens_resolve_async(lens)
+    assert (resolved.command.title, resolved.command.command) == ("1 use", "")
+
+
+async def test_a_lens_has_the_commands_of_the_client(editor_with_commands):
+    editor = editor_with_commands
+    editor.open(FILE)
+    (page,) = await editor.client.text_document_code_lens_async(types.CodeLensParams(editor.document(FILE)))
+    assert (page.command.command, page.command.arguments) == ("linkwright.openInPage", (editor.uri(FILE),))
+    editor.open(PARTS_FILE)
+    lens = (await editor.client.text_document_code_lens_async(types.CodeLensParams(editor.document(PARTS_FILE))))[0]
+    command = (await editor.client.code_lens_resolve_async(lens)).command
+    assert command.command == "linkwright.showReferences"
+    uri, _, (location,) = command.arguments
+    assert uri == editor.uri(PARTS_FILE)
+    assert location["uri"] == editor.uri(FILE)
+
+
+async def test_colours_are_found_and_written_in_the_form_of_the_file(editor):
+    text = MAIN.replace("<link", '<material name="m"><color rgba="1 0.5 0 1"/></material>\n  <link', 1)
+    editor.open(FILE, text)
+    (found,) = await editor.client.text_document_document_color_async(types.DocumentColorParams(editor.document(FILE)))
+    assert found.color == types.Color(1.0, 0.5, 0.0, 1.0)
+    asked = types.ColorPresentationParams(editor.document(FILE), types.Color(0.123456, 0.0, 1.0, 1.0), found.range)
+    (presented,) = await editor.client.text_document_color_presentation_async(asked)
+    assert presented.text_edit == types.TextEdit(found.range, "0.1235 0 1 1")
+
+
+async def test_semantic_tokens_tell_what_names_mean(editor):
+    editor.open(PARTS_FILE)
+    found = await editor.client.text_document_semantic_tokens_full_async(
+        types.SemanticTokensParams(editor.document(PARTS_FILE))
+    )
+    line = column = 0
+    kinds = [*HighlightKind]
+    seen = []
+    lines = PARTS.splitlines()
+    for start in range(0, len(found.data), 5):
+        line_step, step, length, kind, modifiers = found.data[start : start + 5]
+        line, column = line + line_step, step if line_step else column + step
+        seen.append((lines[line][column : column + length], kinds[kind].value, modifiers))
+    assert seen[:2] == [("bar", "macro", 1), ("name", "parameter", 1)]
+    assert ("${", "operator", 0) in seen
+    assert ("name", "parameter", 0) in seen
+    assert ("base", "class", 0) in seen
+
+
+async def test_includes_and_meshes_are_links_and_definitions(editor, package):
+    (package / "meshes").mkdir()
+    (package / "meshes" / "a.stl").write_bytes(b"solid")
+    text = MAIN.replace(
+        "<link",
+        '<xacro:property name="folder" value="package://arm_description/meshes"/>\n'
+        '  <link name="m"><visual><geometry><mesh filename="${folder}/a.stl"/></geometry></visual></link>\n  <link',
+        1,
+    )
+    editor.open(FILE, text)
+    found = await editor.client.text_document_document_link_async(types.DocumentLinkParams(editor.document(FILE)))
+    assert [link.target for link in found] == [editor.uri(PARTS_FILE), (package / "meshes" / "a.stl").as_uri()]
+    (place,) = await editor.client.text_document_definition_async(
+        types.DefinitionParams(editor.document(FILE), at(text, "parts.x"))
+    )
+    assert place.uri == editor.uri(PARTS_FILE)
+
+
+async def test_names_of_the_workspace_are_found_by_some_of_their_letters(editor):
+    editor.open(FILE)
+
+    async def find(query: str) -> list[str]:
+        found = await editor.client.workspace_symbol_async(types.WorkspaceSymbolParams(query))
+        return [symbol.name for symbol in found]
+
+    assert await find("bs") == ["base"]
+    assert await find("BAR") == ["bar"]
+    assert await find("zzz") == []
+
+
+async def test_the_uses_of_a_name_are_highlighted(editor):
+    editor.open(PARTS_FILE)
+    found = await editor.client.text_document_document_highlight_async(
+        types.DocumentHighlightParams(editor.document(PARTS_FILE), at(PARTS, "${na"))
+    )
+    assert [(use.range.start.line, use.kind) for use in found] == [
+        (1, types.DocumentHighlightKind.Write),
+        *[(line, types.DocumentHighlightKind.Read) for line in (2, 3, 5)],
+    ]
+
+
+async def test_calls_of_macros_have_a_hierarchy(editor):
+    text = PARTS.replace(
+        "</robot>", '  <xacro:macro name="pair" params=""><xacro:bar name="x" length="1"/></xacro:macro>\n</robot>'
+    )
+    editor.open(FILE)
+    editor.open(PARTS_FILE, text)
+    document = editor.document(PARTS_FILE)
+    (bar,) = await editor.client.text_document_prepare_call_hierarchy_async(
+        types.CallHierarchyPrepareParams(document, at(text, 'name="ba'))
+    )
+    incoming = await editor.client.call_hierarchy_incoming_calls_async(types.CallHierarchyIncomingCallsParams(bar))
+    assert sorted(call.from_.name for call in incoming) == ["arm.urdf.xacro", "pair"]
+    (pair,) = (call.from_ for call in incoming if call.from_.name == "pair")
+    (outgoing,) = await editor.client.call_hierarchy_outgoing_calls_async(types.CallHierarchyOutgoingCallsParams(pair))
+    assert outgoing.to.name == "bar"
+    assert outgoing.from_ranges[0].start.line == text[: text.index('name="x"')].count("\n")
+
+
+async def test_a_request_for_a_text_that_changes_meanwhile_is_refused(editor):
+    calls = "".join(f'<xacro:bar name="b{number}" length="${{{number} + 1}}"/>\n' for number in range(3000))
+    editor.open(FILE, MAIN.replace("</robot>", calls + "</robot>"))
+    asked = editor.client.text_document_inlay_hint_async(types.InlayHintParams(editor.document(FILE), ALL))
+    task = asyncio.ensure_future(asked)
+    await asyncio.sleep(0)  # the request is sent, then the change; the expansion takes much longer
+    editor.change(FILE, MAIN)
+    with pytest.raises(JsonRpcException, match="changed meanwhile"):
+        await task

@@ -1,0 +1,80 @@
+"""The values of all expressions, as an editor shows them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from linkwright.xacro.session import Inputs
+from linkwright.xacro.tracing.values import evaluated_expressions
+
+HEAD = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+
+
+def values(text: str, **arguments: str) -> dict[str, tuple[str, ...]]:
+    """Return the values of each text with expressions, by its characters."""
+    whole = f"{HEAD}{text}</robot>"
+    found = evaluated_expressions(Inputs("r.xacro", arguments, text=whole))
+    return {whole[each.start : each.end]: each.values for each in found}
+
+
+def test_each_call_has_its_value():
+    text = '<xacro:macro name="m" params="n"><link name="${n}_l"/></xacro:macro><xacro:m n="a"/><xacro:m n="b"/>'
+    assert values(text) == {"${n}": ("'a'", "'b'"), "${n}_l": ("'a_l'", "'b_l'")}
+
+
+def test_an_evaluation_has_its_call_and_its_names():
+    text = (
+        f'{HEAD}<xacro:property name="w" value="2"/><xacro:macro name="m" params="n">'
+        '<link name="l${n * w}"/></xacro:macro>\n<xacro:m n="3"/></robot>'
+    )
+    found = evaluated_expressions(Inputs("r.xacro", {}, text=text))
+    (part,) = (each for each in found if text[each.start : each.end] == "${n * w}")
+    (evaluation,) = part.evaluations
+    assert evaluation.value == "6"
+    assert evaluation.names == (("n", "3"), ("w", "2"))
+    assert evaluation.frame is not None
+    assert evaluation.frame.site.span().line == 2
+
+
+def test_properties_conditions_parameters_and_texts_have_values():
+    text = (
+        '<xacro:property name="a" value="2"/><xacro:property name="b" value="${a + 1}"/>'
+        '<xacro:macro name="m" params="n k:=${a*10}"><gazebo>${n + k}</gazebo></xacro:macro>'
+        '<xacro:if value="${b == 3}"><xacro:m n="${b}"/></xacro:if>'
+    )
+    expected = {"${a + 1}": ("3",), "${b == 3}": ("True",), "${b}": ("3",), "${a*10}": ("20",), "${n + k}": ("23",)}
+    assert values(text) == expected
+
+
+def test_arguments_decide_values():
+    text = '<xacro:arg name="side" default="left"/><link name="$(arg side)"/>'
+    assert values(text) == {"$(arg side)": ("'left'",)}
+    assert values(text, side="right") == {"$(arg side)": ("'right'",)}
+
+
+def test_values_before_an_error_are_known():
+    assert values('<link name="${1 + 1}"/><link name="${missing}"/>') == {"${1 + 1}": ("2",)}
+
+
+@pytest.mark.parametrize("text", ["<a", '<link name="${1 +"/>', '<xacro:include filename="missing.xacro"/>'])
+def test_a_broken_text_has_no_values(text):
+    assert values(text) == {}
+
+
+def test_an_expression_that_changes_a_value_is_evaluated_once():
+    text = (
+        '<xacro:property name="items" value="${[1, 2, 3]}"/><link name="l${items.pop(0)}"/><link name="k${items[0]}"/>'
+    )
+    found = values(text)
+    assert "${items.pop(0)}" not in found
+    assert found["${items[0]}"] == ("2",)
+
+
+def test_included_files_have_values(tmp_path: Path):
+    (tmp_path / "part.xacro").write_text(f'{HEAD}<link name="${{p}}"/></robot>')
+    main = tmp_path / "main.xacro"
+    main.write_text(f'{HEAD}<xacro:property name="p" value="x"/><xacro:include filename="part.xacro"/></robot>')
+    (found,) = evaluated_expressions(Inputs(str(main), {}))
+    assert (Path(found.file).name, found.values) == ("part.xacro", ("'x'",))
