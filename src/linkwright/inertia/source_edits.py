@@ -14,9 +14,8 @@ from linkwright.urdf import Link
 from linkwright.xacro.faults import Frame, frames
 from linkwright.xmltree import Element, parse
 from linkwright.xmltree.patches import Replacement, indentation, newline_of
-from linkwright.xmltree.positions import attribute_name_range, attribute_value_range
+from linkwright.xmltree.positions import attribute_name_range, attribute_value_range, start_tag_end
 
-_START_TAG = lazy_pattern(r"""<(?:[^"'>]|"[^"]*"|'[^']*')*>""")
 _REST_OF_LINE = lazy_pattern(r"(?:[ \t]*<!--(?:(?!-->).)*-->)*(?=[ \t]*\r?\n)")
 """Comments behind a start tag, which belong to it."""
 
@@ -98,7 +97,7 @@ def written_link(link: Link) -> Element:
 
 
 def _new_block(text: str, link: Element, properties: MassProperties) -> Replacement:
-    at = _tag_end(text, link.offset)
+    at = start_tag_end(text, link.offset)
     newline = newline_of(text)
     outer = indentation(text, link.offset)
     child = next(link.elements(), None)
@@ -114,7 +113,7 @@ def _new_block(text: str, link: Element, properties: MassProperties) -> Replacem
 
 
 def _changed_block(text: str, inertial: Element, properties: MassProperties) -> Iterator[Replacement]:
-    end = _tag_end(text, inertial.offset)
+    end = start_tag_end(text, inertial.offset)
     newline = newline_of(text)
     if text[end - 2] == "/":
         block = inertial_block(properties, indentation(text, inertial.offset) or "", newline=newline)
@@ -171,9 +170,3 @@ def _holds(element: Element, pattern: re.Pattern[str]) -> bool:
         child.tag.startswith("xacro:") or any(map(pattern.search, child.attributes.values()))
         for child in element.walk()
     )
-
-
-def _tag_end(text: str, offset: int) -> int:
-    found = _START_TAG.match(text, offset)
-    assert found is not None, "the text was parsed"
-    return found.end()

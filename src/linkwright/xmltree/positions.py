@@ -12,6 +12,7 @@ from linkwright.loading.deferred import lazy_pattern
 
 _TAG_NAME = lazy_pattern(r"<[^\s/>]+")
 _ATTRIBUTE = lazy_pattern(r"""\s*([^\s=/>"']+)\s*=\s*("[^"]*"|'[^']*')""")
+_START_TAG = lazy_pattern(r"""<(?:[^"'>]|"[^"]*"|'[^']*')*>""")
 _CHARACTER = lazy_pattern(r"&[^;&<]*;|\r\n?|.", re.DOTALL)
 
 
@@ -37,6 +38,13 @@ def attribute_name_range(text: str, offset: int, name: str) -> tuple[int, int] |
     """
     found = _attributes(text, offset).get(name)
     return found and found[0]
+
+
+def start_tag_end(text: str, offset: int) -> int:
+    """Return the offset after the start tag whose ``<`` is at an offset of a well-formed text."""
+    found = _START_TAG.match(text, offset)
+    assert found is not None, "the text was parsed"
+    return found.end()
 
 
 _Ranges = dict[str, tuple[tuple[int, int], tuple[int, int]]]

@@ -1,4 +1,4 @@
-"""Hints and lenses beside a text: values of expressions, block parameters of macro calls, and how often a name is used."""
+"""Hints and lenses beside a text: values of expressions, block parameters of calls, and the number of uses of names."""
 
 from __future__ import annotations
 

@@ -17,6 +17,7 @@ from linkwright.language.links import file_references
 from linkwright.language.values import ValuedText, described_values, value_at
 from linkwright.language.workspace import Workspace
 from linkwright.lsp.positions import TextOf, TextPositions
+from linkwright.lsp.requests.expansions import source_of
 from linkwright.lsp.server import LinkwrightServer
 
 _KINDS = {
@@ -143,9 +144,10 @@ def add_requests(server: LinkwrightServer) -> None:
     async def definition_request(
         server: LinkwrightServer, asked: types.DefinitionParams
     ) -> list[types.Location] | None:
+        source = await server.in_thread(lambda: source_of(server, asked.text_document.uri, asked.position))
         path, positions = server.text(asked.text_document)
         if positions is None or server.project is None:
-            return None
+            return source
         known, values = await server.names(path), await server.values(path)
         server.check_unchanged(path, positions)
         found = definitions(known, positions, asked.position, server.positions, server.uri_of)

@@ -1,0 +1,90 @@
+"""The expansion of a description as a text, with the location in the source of each element."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from linkwright.language.includes import real
+from linkwright.language.workspace import Workspace
+from linkwright.xacro import expand
+from linkwright.xmltree import Element, Overlay, parse
+from linkwright.xmltree.positions import start_tag_end
+
+
+@dataclass(frozen=True, slots=True)
+class ExpandedElement:
+    """An element of an expansion and its source.
+
+    Attributes:
+        start: the character offset of the start tag in the text of the expansion.
+        end: the offset after the start tag.
+        file: the file that contains the source of the element.
+        source_start: the offset of the start tag in that file.
+        source_end: the offset after the start tag in that file.
+    """
+
+    start: int
+    end: int
+    file: Path
+    source_start: int
+    source_end: int
+
+
+@dataclass(frozen=True, slots=True)
+class ExpandedText:
+    """The text of an expansion.
+
+    Attributes:
+        text: the text, as `linkwright xacro` writes it.
+        elements: the elements, in the order of the text.
+    """
+
+    text: str
+    elements: tuple[ExpandedElement, ...]
+
+    def at(self, offset: int) -> ExpandedElement | None:
+        """Return the element whose start tag contains an offset, or the nearest one before the offset."""
+        return next((element for element in reversed(self.elements) if element.start <= offset), None)
+
+    def of(self, file: Path, offset: int) -> list[ExpandedElement]:
+        """Return the elements whose source is the start tag around an offset of a file."""
+        return [
+            element
+            for element in self.elements
+            if element.file == file and element.source_start <= offset <= element.source_end
+        ]
+
+
+def expanded_text(
+    project: Workspace, texts: Mapping[Path, str], entry: Path, arguments: Mapping[str, str]
+) -> ExpandedText:
+    """Return the expansion of a description.
+
+    Args:
+        project: the workspace.
+        texts: the texts of the open files.
+        entry: the description.
+        arguments: the values of its arguments, by name.
+
+    Raises:
+        LinkwrightError: the errors of the description.
+    """
+    overlay = Overlay({str(path): text for path, text in texts.items()})
+    expansion = expand(entry, arguments, packages=project.finder(entry), overlay=overlay)
+    text = str(expansion)
+    written = parse(text, str(entry)).root
+    elements = []
+    for shown, element in zip(written.walk(), expansion.document.root.walk(), strict=True):
+        place = _tag_range(shown)
+        source = _tag_range(element)
+        if place is not None and source is not None and element.source is not None:
+            elements.append(ExpandedElement(*place, real(element.source.name), *source))
+    return ExpandedText(text, tuple(elements))
+
+
+def _tag_range(element: Element) -> tuple[int, int] | None:
+    if element.source is None:
+        return None
+    return element.offset, start_tag_end(element.source.text, element.offset)

@@ -1,0 +1,124 @@
+"""The expansion of a description as a virtual document, and the way from an element to its expansions and back.
+
+The URI of the document is ``linkwright-expansion:///PATH?NAME:=VALUE...`` with the path of the description. Its content
+is the answer to ``workspace/textDocumentContent`` (protocol 3.18). The implementations of a place in a description are
+the elements to which it expands; the definition of a place in the virtual document is the element in the source.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from urllib.parse import quote, unquote, urlsplit
+
+from lsprotocol import types
+from pygls.exceptions import JsonRpcException
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.diagnostics.translation import localized
+from linkwright.language.expanded import ExpandedText, expanded_text
+from linkwright.language.includes import real
+from linkwright.language.workspace import Workspace
+from linkwright.lsp.positions import UTF_16, TextPositions
+from linkwright.lsp.server import LinkwrightServer, path_of
+
+SCHEME = "linkwright-expansion"
+
+
+def expansion_uri(entry: Path, arguments: Mapping[str, str]) -> str:
+    """Return the URI of the expansion of a description."""
+    query = "&".join(quote(f"{name}:={value}", safe=":=/") for name, value in arguments.items())
+    uri = entry.as_uri().replace("file:", f"{SCHEME}:", 1)
+    return f"{uri}?{query}" if query else uri
+
+
+def description_of(uri: str) -> tuple[Path, dict[str, str]] | None:
+    """Return the description and the arguments of the URI of an expansion, or None for other URIs."""
+    parts = urlsplit(uri)
+    entry = path_of(f"file://{parts.path}") if parts.scheme == SCHEME else None
+    if entry is None:
+        return None
+    pairs = (unquote(pair).partition(":=") for pair in parts.query.split("&") if pair)
+    return real(entry), {name: value for name, _, value in pairs}
+
+
+def _expansions(
+    project: Workspace, texts: Mapping[Path, str], file: Path
+) -> Iterator[tuple[Path, Mapping[str, str], ExpandedText]]:
+    """Yield an expansion of each description that includes a file, for its first argument set without an error."""
+    for entry in project.index.entries(file, texts):
+        for arguments, _ in project.calls(entry):
+            try:
+                yield entry, arguments, expanded_text(project, texts, entry, arguments)
+            except LinkwrightError:
+                continue
+            break
+
+
+def implementations(
+    project: Workspace, texts: Mapping[Path, str], file: Path, offset: int, encoding: types.PositionEncodingKind | str
+) -> list[types.Location]:
+    """Return the elements to which the element at an offset of a file expands.
+
+    Args:
+        project: the workspace.
+        texts: the texts of the open files.
+        file: the file.
+        offset: the character offset in its text.
+        encoding: the encoding of the positions.
+    """
+    found = []
+    for entry, arguments, expansion in _expansions(project, texts, file):
+        positions = TextPositions(expansion.text, encoding)
+        uri = expansion_uri(entry, arguments)
+        found += [
+            types.Location(uri, positions.range(element.start, element.end)) for element in expansion.of(file, offset)
+        ]
+    return found
+
+
+def source_of(server: LinkwrightServer, uri: str, place: types.Position) -> list[types.Location] | None:
+    """Return the element in the source for a place in the expansion with a URI, or None for other URIs."""
+    description = description_of(uri)
+    if description is None or server.project is None:
+        return None
+    try:
+        expansion = expanded_text(server.project, server.texts(), *description)
+    except LinkwrightError:  # the document shows its text from before the error
+        return []
+    encoding = server.workspace.position_encoding or UTF_16
+    element = expansion.at(TextPositions(expansion.text, encoding).offset(place))
+    source = None if element is None else server.positions(element.file)
+    if element is None or source is None:
+        return []
+    return [types.Location(server.uri_of(element.file), source.range(element.source_start, element.source_end))]
+
+
+def add_requests(server: LinkwrightServer) -> None:
+    """Add the requests of this module to a server."""
+
+    @server.feature(types.TEXT_DOCUMENT_IMPLEMENTATION)
+    async def implementation(
+        server: LinkwrightServer, asked: types.ImplementationParams
+    ) -> list[types.Location] | None:
+        path, positions = server.text(asked.text_document)
+        project, texts = server.project, server.texts()
+        if positions is None or project is None:
+            return None
+        await server.when_indexed()
+        offset, encoding = positions.offset(asked.position), server.workspace.position_encoding or UTF_16
+        return await server.in_thread(lambda: implementations(project, texts, real(path), offset, encoding))
+
+    @server.feature(types.WORKSPACE_TEXT_DOCUMENT_CONTENT, types.TextDocumentContentOptions([SCHEME]))
+    async def text_document_content(
+        server: LinkwrightServer, asked: types.TextDocumentContentParams
+    ) -> types.TextDocumentContentResult | None:
+        description, project, texts = description_of(asked.uri), server.project, server.texts()
+        if description is None or project is None:
+            return None
+        try:
+            expansion = await server.in_thread(lambda: expanded_text(project, texts, *description))
+        except LinkwrightError as error:
+            message = "\n".join(localized(diagnostic.message) for diagnostic in error.diagnostics)
+            raise JsonRpcException(message, code=int(types.LSPErrorCodes.RequestFailed)) from None
+        return types.TextDocumentContentResult(expansion.text)

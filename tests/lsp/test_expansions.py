@@ -1,0 +1,54 @@
+"""The expansion of a description as a virtual document."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from lsprotocol import types
+from pygls.exceptions import JsonRpcException
+
+from linkwright.lsp.requests.expansions import description_of, expansion_uri
+from tests.lsp.conftest import MAIN, PARTS
+from tests.lsp.test_hints import FILE, PARTS_FILE, at
+
+
+async def content(editor, uri: str) -> str:
+    found = await editor.client.workspace_text_document_content_async(types.TextDocumentContentParams(uri))
+    return found.text
+
+
+def test_the_uri_has_the_description_and_its_arguments(tmp_path: Path):
+    file = tmp_path / "机 器.urdf.xacro"
+    file.touch()
+    arguments = {"side": "left & right", "path": "/a/b"}
+    assert description_of(expansion_uri(file.resolve(), arguments)) == (file.resolve(), arguments)
+    assert description_of(file.as_uri()) is None
+
+
+async def test_an_element_leads_to_its_expansions_and_back(editor):
+    text = MAIN.replace("</robot>", '  <xacro:bar name="lower" length="0.3"/>\n</robot>')
+    editor.open(FILE, text)
+    editor.open(PARTS_FILE)
+    place = at(PARTS, "<axis")
+    found = await editor.client.text_document_implementation_async(
+        types.ImplementationParams(editor.document(PARTS_FILE), place)
+    )
+    assert len(found) == 2
+    uri = found[0].uri
+    expansion = await content(editor, uri)
+    lines = expansion.splitlines()
+    assert [lines[location.range.start.line].strip() for location in found] == ['<axis xyz="0 0 1"/>'] * 2
+    assert '<link name="lower"/>' in expansion
+    (source,) = await editor.client.text_document_definition_async(
+        types.DefinitionParams(types.TextDocumentIdentifier(uri), found[1].range.start)
+    )
+    assert source.uri == editor.uri(PARTS_FILE)
+    assert source.range.start.line == place.line
+
+
+async def test_the_expansion_of_a_broken_description_is_its_error(editor):
+    editor.open(FILE, MAIN.replace("xacro:bar", "xacro:baz"))
+    uri = editor.uri(FILE).replace("file:", "linkwright-expansion:")
+    with pytest.raises(JsonRpcException, match="there is no macro 'baz'"):
+        await content(editor, uri)
