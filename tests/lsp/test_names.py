@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from lsprotocol import types
 
-from tests.lsp.conftest import MAIN
+from tests.lsp.conftest import MAIN, PARTS
 
 FILE = "urdf/arm.urdf.xacro"
 CURSOR = "█"
@@ -82,3 +82,33 @@ async def test_a_definition_is_found_in_an_included_file(editor):
 
     assert await look(editor, "<xacro:ba", define) == [("parts.xacro", 1)]
     assert await look(editor, "* rea", define) == [("arm.urdf.xacro", 2)]
+
+
+async def test_a_hover_tells_about_links_joints_meshes_and_packages(editor, package):
+    (package / "meshes").mkdir()
+    triangle = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 0.5 0 0\nvertex 0 2 1\nendloop\nendfacet\n"
+    (package / "meshes" / "a.stl").write_text(f"solid a\n{triangle}endsolid a\n")
+    text = MAIN.replace(
+        '<link name="base"/>',
+        '<link name="base"><inertial><mass value="2"/><inertia ixx="0.1" iyy="0.2" izz="0.3" ixy="0" ixz="0" '
+        'iyz="0"/></inertial><visual><geometry><mesh filename="package://arm_description/meshes/a.stl"/></geometry>'
+        "</visual></link>",
+    )
+    editor.open(FILE, text)
+
+    async def hover(name: str, text: str, place: str) -> str:
+        before = text[: text.index(place) + len(place)]
+        at = types.Position(before.count("\n"), len(before) - before.rfind("\n") - 1)
+        found = await editor.client.text_document_hover_async(types.HoverParams(editor.document(name), at))
+        return "" if found is None else found.contents.value
+
+    base = await hover(FILE, text, 'link name="ba')
+    assert "- root of the tree of links" in base
+    assert "- parent of `upper`" in base
+    assert "- mass 2 kg" in base
+    assert "0.5 × 2 × 1 m, triangles: 1" in await hover(FILE, text, "meshes/a")
+    assert "**arm_description**: An arm." in await hover(FILE, text, "package://arm")
+    editor.open("urdf/parts.xacro")
+    joint = await hover("urdf/parts.xacro", PARTS, "${name}_jo")
+    assert "**joint upper_joint**" in joint
+    assert "- continuous joint from `base` to `upper`" in joint

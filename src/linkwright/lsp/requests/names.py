@@ -11,6 +11,7 @@ from lsprotocol import types
 from linkwright.diagnostics.translation import localized
 from linkwright.language.completion import Completion, ItemKind, complete
 from linkwright.language.definitions import NameDefinition
+from linkwright.language.facts import facts_at
 from linkwright.language.hover import definitions_at, explain_at
 from linkwright.language.includes import real
 from linkwright.language.links import file_references
@@ -76,18 +77,31 @@ def hover(
     path: Path,
     names: Sequence[NameDefinition],
     values: Sequence[ValuedText],
+    facts: Iterable[str],
     positions: TextPositions,
     place: types.Position,
 ) -> types.Hover | None:
-    """Return the explanation of a place, with the values of the expression there, or None."""
+    """Return what is known about a place, or None if there is nothing to say.
+
+    Args:
+        path: the file.
+        names: the names that the description defines.
+        values: the values of the expressions in the file.
+        facts: the facts about the link, joint, mesh or package at the place.
+        positions: the text of the file.
+        place: the place.
+    """
     offset = positions.offset(place)
-    found = explain_at(positions.text, offset, path, names)
-    valued = value_at(values, offset)
-    if valued is None:
-        return None if found is None else types.Hover(_markdown(found.text), positions.range(found.start, found.end))
-    value = described_values(valued, positions.text[valued.start : valued.end])
-    text = value if found is None else f"{localized(found.text)}\n\n{value}"
-    return types.Hover(_markdown(text), positions.range(valued.start, valued.end))
+    found, valued = explain_at(positions.text, offset, path, names), value_at(values, offset)
+    parts = [] if found is None else [localized(found.text)]
+    span = None if found is None else (found.start, found.end)
+    if valued is not None:
+        parts.append(described_values(valued, positions.text[valued.start : valued.end]))
+        span = valued.start, valued.end
+    parts += facts
+    if not parts:
+        return None
+    return types.Hover(_markdown("\n\n".join(parts)), None if span is None else positions.range(*span))
 
 
 def definitions(
@@ -134,11 +148,14 @@ def add_requests(server: LinkwrightServer) -> None:
     @server.feature(types.TEXT_DOCUMENT_HOVER)
     async def hover_request(server: LinkwrightServer, asked: types.HoverParams) -> types.Hover | None:
         path, positions = server.text(asked.text_document)
-        if positions is None:
+        project, texts = server.project, server.texts()
+        if positions is None or project is None:
             return None
         known, values = await server.names(path), await server.values(path)
+        text, offset = positions.text, positions.offset(asked.position)
+        facts = await server.in_thread(lambda: facts_at(project, texts, real(path), text, offset, values))
         server.check_unchanged(path, positions)
-        return hover(path, known, values, positions, asked.position)
+        return hover(path, known, values, facts, positions, asked.position)
 
     @server.feature(types.TEXT_DOCUMENT_DEFINITION)
     async def definition_request(

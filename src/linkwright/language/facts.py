@@ -1,0 +1,168 @@
+"""Facts about links, joints, meshes and packages, in Markdown, for the hover of an editor."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+
+from linkwright.diagnostics import LinkwrightError, phrase
+from linkwright.diagnostics.translation import localized
+from linkwright.inertia.mesh_library import MeshLibrary
+from linkwright.language.definitions import NameKind
+from linkwright.language.links import file_references
+from linkwright.language.occurrences import Occurrence
+from linkwright.language.renaming import occurrence_at
+from linkwright.language.values import ValuedText
+from linkwright.language.workspace import Workspace
+from linkwright.packages import PackageFinder
+from linkwright.packages.manifest import MANIFEST
+from linkwright.packages.readers.package_xml import Manifest
+from linkwright.urdf import Joint, Link, Mesh, Robot, read
+from linkwright.urdf.tree import children_of, parent_joints
+from linkwright.xacro import expand
+from linkwright.xmltree import Overlay, parse
+from linkwright.xmltree.decoding import decode
+from linkwright.xmltree.reader import read_bytes
+
+_MESH_FILES = (".stl", ".obj", ".dae")
+_MAX_PARTS = 2
+_PACKAGE = re.compile(r"(?:package://|\$\(find(?:-pkg-share)?\s+)([\w.-]+)")
+
+
+def facts_at(
+    project: Workspace,
+    texts: Mapping[Path, str],
+    file: Path,
+    text: str,
+    offset: int,
+    values: Sequence[ValuedText],
+) -> list[str]:
+    """Return the facts about the link, joint, mesh or package at an offset, each as Markdown.
+
+    Args:
+        project: the workspace.
+        texts: the texts of the open files.
+        file: the file.
+        text: its text.
+        offset: the character offset.
+        values: the values of the expressions in the file.
+    """
+    finder = project.finder(file)
+    line_start, line_end = text.rfind("\n", 0, offset) + 1, text.find("\n", offset)
+    for found in _PACKAGE.finditer(text, line_start, len(text) if line_end < 0 else line_end):
+        if found.start(1) <= offset <= found.end(1):
+            package = package_facts(finder, found[1])
+            return [] if package is None else [package]
+    for link in file_references(text, file, finder, values):
+        if link.start <= offset <= link.end:
+            mesh = mesh_facts(link.file)
+            if mesh is not None:
+                return [mesh]
+    part = occurrence_at(text, file, offset)
+    return [] if part is None else [*_parts(project, texts, part, values)]
+
+
+def _parts(
+    project: Workspace, texts: Mapping[Path, str], part: Occurrence, values: Sequence[ValuedText]
+) -> Iterator[str]:
+    """Yield the facts about the links or joints that a name with or without expressions represents."""
+    if part.kind not in (NameKind.LINK, NameKind.JOINT):
+        return
+    names = [part.name]
+    if "$" in part.name:
+        whole = next((value for value in values if (value.start, value.end) == (part.start, part.end)), None)
+        names = [] if whole is None else [name.strip("'\"") for name in whole.values()]
+    robots = [*robots_of(project, texts, part.file)]
+    for name in names[:_MAX_PARTS]:
+        facts = next((facts for robot in robots if (facts := part_facts(robot, part.kind, name))), None)
+        if facts is not None:
+            yield f"**{part.kind.value} {name}**\n\n{facts}"
+
+
+def robots_of(project: Workspace, texts: Mapping[Path, str], file: Path) -> Iterator[Robot]:
+    """Yield the robots of the descriptions that include a file, one for each argument set that can be expanded."""
+    overlay = Overlay({str(path): text for path, text in texts.items()})
+    for entry in project.index.entries(file, texts):
+        for arguments, _ in project.calls(entry):
+            try:
+                expansion = expand(entry, arguments, packages=project.finder(entry), overlay=overlay)
+            except LinkwrightError:
+                continue
+            robot = read(expansion.document).robot
+            if robot is not None:
+                yield robot
+
+
+def part_facts(robot: Robot, kind: NameKind, name: str) -> str | None:
+    """Return the facts about a link or joint of a robot, or None if it has no such link or joint."""
+    if kind is NameKind.LINK and name in robot.links:
+        return "\n".join(_link_facts(robot, robot.links[name]))
+    if kind is NameKind.JOINT and name in robot.joints:
+        return "\n".join(_joint_facts(robot.joints[name]))
+    return None
+
+
+def mesh_facts(file: Path) -> str | None:
+    """Return the size, the number of triangles and the length in bytes of a mesh file, or None if it is unreadable."""
+    if file.suffix.lower() not in _MESH_FILES:
+        return None
+    try:
+        outline = MeshLibrary(PackageFinder(), file.parent).outline(Mesh(str(file)))
+        length = file.stat().st_size
+    except (LinkwrightError, OSError):
+        return None
+    size = " × ".join(f"{value:.4g}" for value in outline.bounds.size)
+    facts = phrase("{size} m, triangles: {count:,}, bytes: {length:,}", size=size, count=outline.count, length=length)
+    return f"`{file.name}`: {localized(facts)}"
+
+
+def package_facts(finder: PackageFinder, name: str) -> str | None:
+    """Return the description and the folder of a package, or None if it is not found."""
+    folder = finder.find(name)
+    if folder is None:
+        return None
+    try:
+        description = Manifest(parse(decode(read_bytes(folder / MANIFEST), MANIFEST), MANIFEST)).text("description")
+    except (LinkwrightError, OSError):
+        description = ""
+    return f"**{name}**" + (f": {description}" if description else "") + f"\n\n`{folder}`"
+
+
+def _link_facts(robot: Robot, link: Link) -> Iterator[str]:
+    parent = parent_joints(robot).get(link.name)
+    if parent is None:
+        yield "- " + localized(phrase("root of the tree of links"))
+    else:
+        yield "- " + localized(
+            phrase(
+                "child of `{parent}`, by the {type} joint `{joint}`",
+                parent=parent.parent,
+                type=parent.type,
+                joint=parent.name,
+            )
+        )
+    children = [joint.child for joint in children_of(robot).get(link.name, ())]
+    if children:
+        yield "- " + localized(phrase("parent of {children}", children=", ".join(f"`{child}`" for child in children)))
+    inertial = link.inertial
+    if inertial is not None:
+        yield "- " + localized(phrase("mass {mass:g} kg", mass=inertial.mass))
+        center = " ".join(f"{value:g}" for value in inertial.origin.xyz)
+        moments = ", ".join(f"{name} {getattr(inertial, name):.4g}" for name in ("ixx", "iyy", "izz"))
+        yield "- " + localized(phrase("centre of mass {center} m; {moments} kg m²", center=center, moments=moments))
+
+
+def _joint_facts(joint: Joint) -> Iterator[str]:
+    yield "- " + localized(
+        phrase("{type} joint from `{parent}` to `{child}`", type=joint.type, parent=joint.parent, child=joint.child)
+    )
+    yield "- " + localized(phrase("origin {origin} m", origin=" ".join(f"{value:.4g}" for value in joint.origin.xyz)))
+    if joint.type not in ("fixed", "floating"):
+        yield "- " + localized(phrase("axis {axis}", axis=" ".join(f"{value:g}" for value in joint.axis)))
+    limit = joint.limit
+    if limit is not None and joint.type in ("revolute", "prismatic"):
+        unit = "m" if joint.type == "prismatic" else "rad"
+        yield "- " + localized(
+            phrase("limits {lower:g} to {upper:g} {unit}", lower=limit.lower, upper=limit.upper, unit=unit)
+        )
