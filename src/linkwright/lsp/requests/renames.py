@@ -14,7 +14,8 @@ from linkwright.diagnostics.translation import localized
 from linkwright.language.includes import real
 from linkwright.language.mentions import Mention
 from linkwright.language.occurrences import Occurrence
-from linkwright.language.renaming import Edit, occurrence_at, references, rename
+from linkwright.language.proof import Edit
+from linkwright.language.renaming import occurrence_at, references, rename
 from linkwright.lsp.server import LinkwrightServer
 
 
