@@ -101,4 +101,4 @@ def _edits(fixes: Iterable[Fix]) -> list[Edit]:
 
 
 def _fits(edit: Edit, others: Iterable[Edit]) -> bool:
-    return all(edit.file != other.file or edit.end <= other.start or other.end <= edit.start for other in others)
+    return all(edit.file != other.file or edit.end < other.start or other.end < edit.start for other in others)
