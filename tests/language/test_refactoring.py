@@ -88,6 +88,17 @@ def test_a_name_that_is_taken_gets_a_number(tmp_path):
     assert '<mass value="${mass_value_2}"/>' in changed
 
 
+def test_a_comment_stays_above_its_element(tmp_path):
+    body = '  <!-- the arm\n       of the robot -->\n  <!-- b -->\n  <a v="3"/>\n'
+    changed = Description(tmp_path, body).refactored(Action.EXTRACT_PROPERTY, "3")
+    assert changed.startswith('  <xacro:property name="a_v" value="3"/>\n  <!-- the arm')
+
+
+def test_a_property_below_a_comment_that_xacro_then_shows_is_not_inlined(tmp_path):
+    body = '  <!-- sizes -->\n  <xacro:property name="r" value="1"/>\n  <b v="${r}"/>\n'
+    assert "comments" in Description(tmp_path, body).refused(Action.INLINE_PROPERTY, "r}")
+
+
 def test_a_number_that_xacro_would_write_in_another_way_is_refused(tmp_path):
     description = Description(tmp_path, '  <a v="0.10"/>\n')
     assert "would change" in description.refused(Action.EXTRACT_PROPERTY, "0.10")
@@ -107,6 +118,9 @@ def test_lines_of_elements_keep_their_relative_indentation(tmp_path):
     assert "</visual>\n    </link>\n  </xacro:macro>\n" in changed
 
 
+START = '  <xacro:arg name="x" default="1"/>\n  <xacro:property name="a" value="1"/>\n'
+
+
 @pytest.mark.parametrize(
     ("value", "use", "expected"),
     [
@@ -119,14 +133,15 @@ def test_lines_of_elements_keep_their_relative_indentation(tmp_path):
         ("${a}_b", "x_${r}", "x_${a}_b"),
         ("left", "${r == 'left'}", "${'left' == 'left'}"),
         ("007", "${r + 1}", "${7 + 1}"),
+        ("${a + $(arg x)}", "${2 * r}", "${2 * (a + $(arg x))}"),
     ],
 )
 def test_a_property_is_inlined_with_parentheses_where_they_are_needed(tmp_path, value, use, expected):
-    body = f'  <xacro:property name="a" value="1"/>\n  <xacro:property name="r" value="{value}"/>\n  <b v="{use}"/>\n'
+    body = f'{START}  <xacro:property name="r" value="{value}"/>\n  <b v="{use}"/>\n'
     changed = Description(tmp_path, body).refactored(
         Action.INLINE_PROPERTY, "r", 'name="a" value="1"/>\n  <xacro:property name="'
     )
-    assert changed == f'  <xacro:property name="a" value="1"/>\n  <b v="{expected}"/>\n'
+    assert changed == f'{START}  <b v="{expected}"/>\n'
 
 
 def test_a_property_with_two_definitions_is_not_inlined(tmp_path):
@@ -150,7 +165,7 @@ def test_the_inertia_of_a_link_comes_from_its_shapes(tmp_path):
 
 def test_the_inertia_of_a_link_with_expressions_is_refused(tmp_path):
     body = '  <link name="a"><visual><geometry><box size="${1} 1 1"/></geometry></visual></link>\n'
-    assert "expressions" in Description(tmp_path, body).refused(Action.FILL_IN_INERTIA, "link")
+    assert "does not fit" in Description(tmp_path, body).refused(Action.FILL_IN_INERTIA, "link")
 
 
 def test_dollars_of_a_urdf_keep_their_meaning_in_xacro(tmp_path):

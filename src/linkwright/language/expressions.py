@@ -12,6 +12,7 @@ from linkwright.xacro.expressions.template import TokenKind, tokenize
 from linkwright.xacro.faults import Fault
 
 _ENTITY = lazy_pattern(r"&(?:lt|gt|quot|apos|amp);")
+_SUBSTITUTION = lazy_pattern(r"\$\([^()]*\)")
 _CHARACTERS = {"&lt;": "<", "&gt;": ">", "&quot;": '"', "&apos;": "'", "&amp;": "&"}
 
 
@@ -59,9 +60,9 @@ def expressions_in(text: str) -> Iterator[WrittenExpression]:
 def parsed(source: str) -> ast.expr | None:
     """Return the syntax tree of an expression as written, or None if it is not valid.
 
-    Offsets in the tree are those of the source without leading blanks.
+    Offsets in the tree are those of the source without leading blanks. A ``$(...)`` in it counts as a name.
     """
-    body = re.sub(r"[\n\r\t]", " ", decoded(source)).strip()
+    body = _SUBSTITUTION.sub(lambda found: "_" * len(found[0]), re.sub(r"[\n\r\t]", " ", decoded(source)).strip())
     try:
         return ast.parse(body, mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):

@@ -7,6 +7,7 @@ import keyword
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 
 from linkwright.diagnostics import phrase
@@ -168,7 +169,7 @@ def extract_property(
     )
     proof = ExpansionProof(project, texts, file)
     error: UnprovedError | None = None
-    for place in _places(element, is_local=is_local):
+    for place in _places(text, element, is_local=is_local):
         edits = (_before(file, text, place, definition), use)
         try:
             proof.check_equal(edits)
@@ -183,8 +184,11 @@ def _quoted(content: str, quote: str) -> str:
     return content.replace(quote, "&quot;" if quote == '"' else "&apos;")
 
 
-def _places(element: WrittenElement, *, is_local: bool) -> Iterator[WrittenElement]:
-    """Yield the elements before which a definition may stand, the best first."""
+def _places(text: str, element: WrittenElement, *, is_local: bool) -> Iterator[int]:
+    """Yield the offsets at which a definition may be inserted, the best first.
+
+    A comment directly above an element belongs to it, so a definition is inserted above the comment.
+    """
     places: list[WrittenElement] = []
     macro, top = element.macro, element.top
     if top is not None and not (is_local and macro is not None):
@@ -192,14 +196,32 @@ def _places(element: WrittenElement, *, is_local: bool) -> Iterator[WrittenEleme
     if macro is not None:
         places.append(element.child_of(macro))
     places.append(element)
-    yield from dict.fromkeys(places)
+    offsets = [offset for place in places for offset in (start_with_comments(text, place.start), place.start)]
+    yield from dict.fromkeys(offsets)
 
 
-def _before(file: Path, text: str, element: WrittenElement, new: str) -> Edit:
-    """Return the edit that inserts lines before an element, with its indentation."""
-    blanks = indentation(text, element.start)
+def start_with_comments(text: str, start: int) -> int:
+    """Return the start of an element, or that of the comments directly above it.
+
+    Args:
+        text: the text.
+        start: the character offset of the element.
+    """
+    while True:
+        before = text[:start].rstrip(" \t")
+        above = before.rstrip()
+        begin = above.rfind("<!--")
+        is_attached = above.endswith("-->") and begin >= 0 and before[len(above) :].count("\n") == 1
+        if not is_attached or indentation(text, begin) is None:
+            return start
+        start = begin
+
+
+def _before(file: Path, text: str, start: int, new: str) -> Edit:
+    """Return the edit that inserts lines before an offset, with the indentation there."""
+    blanks = indentation(text, start)
     separator = "" if blanks is None else f"{newline_of(text)}{blanks}"
-    return Edit(file, element.start, element.start, new + separator)
+    return Edit(file, start, start, new + separator)
 
 
 def unique_name(project: Workspace, texts: Mapping[Path, str], file: Path, wish: str) -> str:
@@ -283,12 +305,14 @@ def extract_macro(
     newline, blanks = newline_of(text), indentation(text, top.start) or ""
     proof = ExpansionProof(project, texts, file)
     error: UnprovedError | None = None
-    for parameters in _parameter_lists(project, texts, file, text, (start, end)):
+    places = dict.fromkeys((start_with_comments(text, top.start), top.start))
+    lists = _parameter_lists(project, texts, file, text, (start, end))
+    for parameters, place in product(lists, places):
         call = "".join(f' {parameter}="${{{parameter}}}"' for parameter in parameters)
         body = _indented(text, start, end, blanks + _STEP)
         params = f' params="{" ".join(parameters)}"' if parameters else ' params=""'
         lines = (f'<xacro:macro name="{name}"{params}>', f"{blanks}{_STEP}{body}", f"{blanks}</xacro:macro>")
-        definition = _before(file, text, top, newline.join(lines))
+        definition = _before(file, text, place, newline.join(lines))
         edits = _joined(definition, Edit(file, start, end, f"<xacro:{name}{call}/>"))
         try:
             proof.check_equal(edits)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.inertia import MeshLibrary, estimate
-from linkwright.inertia.source_edits import NotWritableError
+from linkwright.inertia.source_edits import EXPRESSION, NotWritableError
 from linkwright.inertia.writing import edits_of_link
 from linkwright.language.grammar import PREFIX
 from linkwright.language.includes import real
@@ -20,13 +20,14 @@ from linkwright.xmltree import Element, Overlay
 
 
 def link_with_shapes_at(text: str, offset: int) -> WrittenElement | None:
-    """Return the link around an offset if it has shapes that no macro makes, or None."""
+    """Return the link around an offset if it has shapes without expressions, or None."""
     element = innermost(written_elements(text), offset)
     link = None if element is None else next((one for one in element.around() if one.name == "link"), None)
-    parts = [] if link is None else [child.name for child in link.children]
-    if not {"visual", "collision"} & {*parts} or any(part.startswith(PREFIX) for part in parts):
+    if link is None or any(child.name.startswith(PREFIX) for child in link.children):
         return None
-    return link
+    shapes = [child for child in link.children if child.name in ("visual", "collision")]
+    parts = [part for shape in shapes for part in shape.children if part.name in ("origin", "geometry")]
+    return link if parts and not any(EXPRESSION.search(text, part.start, part.end) for part in parts) else None
 
 
 def fill_in_inertia(

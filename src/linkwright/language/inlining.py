@@ -22,6 +22,8 @@ from linkwright.xmltree.tokens import Kind, tokens
 
 _LITERAL = lazy_pattern(r"[^$'\"&<\\]*")
 _PROPERTY = "xacro:property"
+_ATTRIBUTES = frozenset({"name", "value", "scope", "lazy_eval"})
+"""Attributes of a definition that can be inlined; a default depends on other definitions."""
 
 
 class _Piece(NamedTuple):
@@ -86,9 +88,9 @@ def inline_property(project: Workspace, texts: Mapping[Path, str], name: Occurre
 def _value(element: WrittenElement) -> str | None:
     """Return the value of a property's definition as written, or None if it has other attributes or content."""
     attributes = {attribute.name: attribute.value for attribute in element.tag.attributes()}
-    if element.name != _PROPERTY or element.children or element.end < 0 or attributes.keys() != {"name", "value"}:
+    if element.name != _PROPERTY or element.children or element.end < 0 or not {*attributes} <= _ATTRIBUTES:
         return None
-    return attributes["value"]
+    return attributes.get("value")
 
 
 def _replacements(
