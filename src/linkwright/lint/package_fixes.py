@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 _SHARE = "share/${PROJECT_NAME}"
 _REST = lazy_pattern(r"[ \t]*(,?)[ \t]*(#[^\n]*)?")
 _LAST_COMMAND = lazy_pattern(r"^[ \t]*ament_(auto_)?package[ \t]*\(", re.MULTILINE | re.IGNORECASE)
+_JOINED = lazy_pattern(r"\(\s*os\.path\.join\(\s*['\"]share['\"],\s*package_name\b")
 _FIRST_IMPORT = lazy_pattern(r"^(import|from)[ \t]", re.MULTILINE)
 
 
@@ -137,6 +138,8 @@ def _data_files_fix(setup: SetupFile, entries: list[str], imports: tuple[Edit, .
         edit = _after_last(source, elements[-1], entries)
     else:
         edit = Edit(source.name, start + 1, start + 1, ", ".join(entries))
+    if any(one.start > edit.start for one in imports):  # the import would come after its use
+        return None
     edits = (*imports, edit)
     changed = text
     for one in sorted(edits, key=lambda one: one.start, reverse=True):
@@ -200,9 +203,11 @@ def _glob(setup: SetupFile) -> tuple[str | None, tuple[Edit, ...]]:
 
 
 def _share_folder(setup: SetupFile, name: str, folder: str = "") -> str:
-    """Return the expression of a folder in the share folder, by the variable ``package_name`` if there is one."""
-    below = f"/{folder}" if folder else ""
-    if re.search(rf"^package_name\s*=\s*['\"]{re.escape(name)}['\"]", setup.source.text, re.MULTILINE):
+    """Return the expression of a folder in the share folder, in the form of the other entries."""
+    text, below = setup.source.text, f"/{folder}" if folder else ""
+    if _JOINED.search(text):
+        return "os.path.join('share', package_name" + (f", '{folder}')" if folder else ")")
+    if re.search(rf"^package_name\s*=\s*['\"]{re.escape(name)}['\"]", text, re.MULTILINE):
         return "'share/' + package_name" + (f" + '{below}'" if below else "")
     return f"'share/{name}{below}'"
 
