@@ -137,3 +137,17 @@ async def test_only_the_kinds_that_are_asked_for_come(editor):
     assert not await actions(editor, FILE, MAIN, "0.4", ["source"])
     assert await actions(editor, FILE, MAIN, "0.4", ["refactor.extract.property"])
     assert not await actions(editor, FILE, MAIN, "0.4", ["refactor.inline"])
+
+
+async def test_a_missing_install_line_is_added_to_a_build_file(editor):
+    (editor.folder / "linkwright.toml").write_text('select = ["LW822"]\n')
+    (editor.folder / "launch").mkdir()
+    (editor.folder / "launch" / "arm.launch.py").write_text("from launch import LaunchDescription\n")
+    text = (editor.folder / "CMakeLists.txt").read_text()
+    editor.open("CMakeLists.txt", text)
+    await editor.until("CMakeLists.txt", "LW822")
+    fix, *_ = await actions(editor, "CMakeLists.txt", text, "project(arm_description)", ["quickfix"])
+    changed = applied(text, fix.edit)
+    assert "install(DIRECTORY urdf launch DESTINATION share/${PROJECT_NAME})" in changed
+    editor.change("CMakeLists.txt", changed)
+    await editor.until("CMakeLists.txt")

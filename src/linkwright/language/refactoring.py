@@ -9,6 +9,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase
 from linkwright.language.conversion import NewFile, can_be_converted, convert_to_xacro
+from linkwright.language.cursor import name_at
 from linkwright.language.definitions import NameDefinition, NameKind
 from linkwright.language.extraction import extract_macro, extract_property, selected_elements, selected_value
 from linkwright.language.grammar import root_of
@@ -18,6 +19,8 @@ from linkwright.language.proof import Edit, UnprovedError
 from linkwright.language.workspace import Workspace
 from linkwright.sdf.worlds import SDF
 
+_MAX_TEXT = 500_000
+"""Characters; longer descriptions are made by programs."""
 _MAX_SHOWN = 30
 """Characters of a selection in a title."""
 
@@ -69,7 +72,7 @@ def offers_at(text: str, file: Path, start: int, end: int, names: Iterable[NameD
         names: the names that the description defines.
     """
     root = root_of(file)
-    if root is None or root is SDF:
+    if root is None or root is SDF or len(text) > _MAX_TEXT:
         return
     if can_be_converted(text, file):
         title = phrase("write this URDF as xacro, in a new file '{file}'", file=f"{file.name}.xacro")
@@ -88,8 +91,9 @@ def offers_at(text: str, file: Path, start: int, end: int, names: Iterable[NameD
                 else phrase("extract {count} elements to a macro", count=len(siblings))
             )
             yield Offer(Action.EXTRACT_MACRO, title)
-        name = property_at(text, file, start)
-        if name is not None and end <= name.end and _has_one_value(name.name, names):
+        word = name_at(text, start)
+        name = property_at(text, file, start) if word is not None and _has_one_value(word[0], names) else None
+        if name is not None and end <= name.end:
             yield Offer(Action.INLINE_PROPERTY, phrase("inline the property '{name}'", name=name.name))
     link = link_with_shapes_at(text, start)
     if link is not None and link.macro is None:

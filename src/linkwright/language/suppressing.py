@@ -11,14 +11,17 @@ import yaml
 
 from linkwright.diagnostics import SourceText
 from linkwright.language.proof import Edit, edited
-from linkwright.language.written import WrittenElement, innermost, written_elements
+from linkwright.language.written import innermost, written_elements
 from linkwright.lint.suppression import directives
 from linkwright.lint.targets import XML_FILES
 from linkwright.packages.readers.cmake_syntax import statements
 from linkwright.xmltree.patches import newline_of
+from linkwright.xmltree.tokens import Kind, tokens
 
 REASON = "reason"
 """The text in the parentheses of a new comment, which the user replaces."""
+_MAX_TEXT = 500_000
+"""Characters; longer files are made by programs."""
 _UNREAD = (".sdf", ".world", ".sdf.xacro", ".world.xacro")
 """Files whose findings cannot be suppressed by comments."""
 
@@ -35,13 +38,16 @@ def suppression(text: str, file: Path, code: str, offset: int) -> Edit | None:
     Returns:
         The edit, or None if no comment can suppress it.
     """
-    if file.name.endswith(_UNREAD) or offset > len(text):
+    if file.name.endswith(_UNREAD) or not 0 <= offset <= len(text) <= _MAX_TEXT:
         return None
     is_xml = file.name.endswith((*XML_FILES, ".xml"))
     if is_xml != text.lstrip("\ufeff \t\r\n").startswith("<"):
         return None
-    edits = _in_xml(text, file, code, offset) if is_xml else _in_lines(text, file, code, offset)
-    return next((edit for edit in edits if _suppresses(text, edit, code, offset) and _is_harmless(text, edit)), None)
+    if is_xml:
+        edits = [edit for edit in _in_xml(text, file, code, offset) if not _is_in_markup(text, edit.start)]
+    else:
+        edits = [edit for edit in _in_lines(text, file, code, offset) if _is_harmless(text, edit)]
+    return next((edit for edit in edits if _suppresses(text, edit, code, offset)), None)
 
 
 def code_at(text: str, offset: int) -> tuple[str, int] | None:
@@ -66,15 +72,17 @@ def _in_xml(text: str, file: Path, code: str, offset: int) -> list[Edit]:
     blanks = text[line : element.start]
     above = [] if blanks.strip() else [Edit(file, line, line, f"{blanks}{comment}{newline_of(text)}")]
     end = _line_end(text, offset)
-    behind = [Edit(file, end, end, f" {comment}")] if _is_between_tags(element, end) else []
+    behind = [Edit(file, end, end, f" {comment}")]
     inside = [Edit(file, element.start, element.start, f"{comment} ")]
     return [*behind, *above] if element.parent is None else [*above, *behind, *inside]
 
 
-def _is_between_tags(element: WrittenElement, offset: int) -> bool:
-    """Return whether an offset after the start of an element is outside of its start tag and those of its children."""
-    tags = [element.tag, *(child.tag for child in element.children)]
-    return not any(tag.start < offset < tag.end for tag in tags)
+def _is_in_markup(text: str, offset: int) -> bool:
+    """Return whether an offset is inside of a tag, comment or CDATA section."""
+    for token in tokens(text):
+        if token.end > offset:
+            return token.start < offset and token.kind is not Kind.TEXT
+    return False
 
 
 def _in_lines(text: str, file: Path, code: str, offset: int) -> list[Edit]:
@@ -99,12 +107,12 @@ def _suppresses(text: str, edit: Edit, code: str, offset: int) -> bool:
 
 
 def _is_harmless(text: str, edit: Edit) -> bool:
-    """Return whether a comment changes nothing that the file means."""
+    """Return whether a comment changes nothing in the meaning of a file, whose format must be known."""
     return _meaning(text, edit.file) == _meaning(edited(text, [edit]), edit.file)
 
 
 def _meaning(text: str, file: Path) -> object:
-    """Return what a file means apart from its comments, or None if its format is not known or it has an error."""
+    """Return what a file means apart from its comments; the text itself if its format is not known."""
     try:
         if file.name.endswith(".py"):
             kinds = (tokenize.COMMENT, tokenize.NL)
@@ -116,6 +124,5 @@ def _meaning(text: str, file: Path) -> object:
         if file.name == "CMakeLists.txt":
             return [(one.name, [word.text for word in one.tokens]) for one in statements(SourceText("", text))]
     except (SyntaxError, ValueError, RecursionError, MemoryError, tokenize.TokenError, yaml.YAMLError):
-        return None
-    elements = written_elements(text)
-    return [(one.name, one.tag.text, len(one.children)) for one in elements]
+        return text
+    return text

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 from linkwright.xmltree.tokens import Kind, Token, tokens
 
@@ -63,8 +64,9 @@ class WrittenElement:
         return next((found.value or "" for found in self.tag.attributes() if found.name == attribute), "")
 
 
-def written_elements(text: str) -> list[WrittenElement]:
-    """Return all elements of a text in the order of their start tags."""
+@lru_cache(maxsize=1)
+def written_elements(text: str) -> Sequence[WrittenElement]:
+    """Return all elements of a text in the order of their start tags; those of the last text are kept."""
     elements: list[WrittenElement] = []
     current: WrittenElement | None = None
     for token in tokens(text):
@@ -85,7 +87,7 @@ def written_elements(text: str) -> list[WrittenElement]:
     return elements
 
 
-def innermost(elements: list[WrittenElement], offset: int) -> WrittenElement | None:
+def innermost(elements: Sequence[WrittenElement], offset: int) -> WrittenElement | None:
     """Return the smallest element around an offset, or None.
 
     Args:
