@@ -111,6 +111,13 @@ def test_elements_become_a_macro_with_the_names_that_they_use(tmp_path):
     assert '\n      <xacro:wheel_visual radius="${radius}"/>\n' in changed
 
 
+def test_a_comment_moves_to_the_macro_with_its_element(tmp_path):
+    body = '  <!-- the arm -->\n  <a v="3"/>\n'
+    changed = Description(tmp_path, body).refactored(Action.EXTRACT_MACRO, '<a v="3"/>')
+    macro = '  <xacro:macro name="a_macro" params="">\n    <!-- the arm -->\n    <a v="3"/>\n  </xacro:macro>\n'
+    assert changed == f"{macro}  <xacro:a_macro/>\n"
+
+
 def test_lines_of_elements_keep_their_relative_indentation(tmp_path):
     link = MACRO[MACRO.index("<link") : MACRO.index("</link>") + len("</link>")]
     changed = Description(tmp_path, f"  <gazebo>\n{MACRO}  </gazebo>\n").refactored(Action.EXTRACT_MACRO, link)

@@ -305,15 +305,18 @@ def extract_macro(
     newline, blanks = newline_of(text), indentation(text, top.start) or ""
     proof = ExpansionProof(project, texts, file)
     error: UnprovedError | None = None
+    starts = dict.fromkeys((start, start_with_comments(text, start)))  # a comment above a call is lost, so it may move
     places = dict.fromkeys((start_with_comments(text, top.start), top.start))
     lists = _parameter_lists(project, texts, file, text, (start, end))
-    for parameters, place in product(lists, places):
+    for parameters, begin, place in product(lists, starts, places):
+        if begin < place:
+            continue
         call = "".join(f' {parameter}="${{{parameter}}}"' for parameter in parameters)
-        body = _indented(text, start, end, blanks + _STEP)
-        params = f' params="{" ".join(parameters)}"' if parameters else ' params=""'
+        body = _indented(text, begin, end, blanks + _STEP)
+        params = f' params="{" ".join(parameters)}"'
         lines = (f'<xacro:macro name="{name}"{params}>', f"{blanks}{_STEP}{body}", f"{blanks}</xacro:macro>")
         definition = _before(file, text, place, newline.join(lines))
-        edits = _joined(definition, Edit(file, start, end, f"<xacro:{name}{call}/>"))
+        edits = _joined(definition, Edit(file, begin, end, f"<xacro:{name}{call}/>"))
         try:
             proof.check_equal(edits)
         except UnprovedError as reason:
@@ -335,7 +338,7 @@ def _macro_name(element: WrittenElement) -> str:
     tag = element.name.removeprefix(PREFIX)
     for one in element.around():
         literal = re.sub(r"\$\{[^}]*\}|\$\([^)]*\)", "", one.value("name")).strip("_- ")
-        if literal:
+        if literal and one.parent is not None:
             return literal if literal.endswith(tag) else f"{literal}_{tag}"
     return f"{tag}_macro"
 
