@@ -10,10 +10,11 @@ from hypothesis import strategies as st
 from linkwright.language.colors import colors_in
 from linkwright.language.completion import complete
 from linkwright.language.definitions import definitions_in
-from linkwright.language.extraction import selected_elements, selected_value
+from linkwright.language.extraction import selected_value
 from linkwright.language.highlighting import highlights_in
 from linkwright.language.hover import definitions_at, explain_at
 from linkwright.language.links import file_references
+from linkwright.language.macro_extraction import selected_elements
 from linkwright.language.refactoring import offers_at
 from linkwright.language.suppressing import code_at, suppression
 from linkwright.lsp.positions import TextPositions

@@ -11,10 +11,11 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase
 from linkwright.language.conversion import NewFile, can_be_converted, convert_to_xacro
 from linkwright.language.cursor import name_at
 from linkwright.language.definitions import NameDefinition, NameKind
-from linkwright.language.extraction import extract_macro, extract_property, selected_elements, selected_value
+from linkwright.language.extraction import extract_property, selected_value
 from linkwright.language.grammar import root_of
 from linkwright.language.inertials import fill_in_inertia, link_with_shapes_at
 from linkwright.language.inlining import inline_property, property_at
+from linkwright.language.macro_extraction import extract_macro, selected_elements
 from linkwright.language.proof import Edit, UnprovedError
 from linkwright.language.workspace import Workspace
 from linkwright.sdf.worlds import SDF
