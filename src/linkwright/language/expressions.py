@@ -62,7 +62,7 @@ def parsed(source: str) -> ast.expr | None:
 
     Offsets in the tree are those of the source without leading blanks. A ``$(...)`` in it counts as a name.
     """
-    body = _SUBSTITUTION.sub(lambda found: "_" * len(found[0]), re.sub(r"[\n\r\t]", " ", decoded(source)).strip())
+    body = _SUBSTITUTION.sub(lambda command: "_" * len(command[0]), re.sub(r"[\n\r\t]", " ", decoded(source)).strip())
     try:
         return ast.parse(body, mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):

@@ -91,7 +91,7 @@ def _selection(
     """Return the selection in a value that begins at an offset, without the blanks at its ends."""
     start, end = selected[0] - at, selected[1] - at
     if start == end:
-        number = next((found for found in _NUMBER.finditer(value) if found.start() <= start <= found.end()), None)
+        number = next((match for match in _NUMBER.finditer(value) if match.start() <= start <= match.end()), None)
         if number is None:
             return None
         start, end = number.span()
@@ -162,8 +162,8 @@ def extract_property(
     use = Edit(file, selection.start, selection.end, name if selection.in_expression else f"${{{name}}}")
     names = occurrences_in(text, file)
     is_local = any(
-        found.kind is NameKind.PARAMETER and selection.start <= found.start < selection.end and not found.is_definition
-        for found in names
+        name.kind is NameKind.PARAMETER and selection.start <= name.start < selection.end and not name.is_definition
+        for name in names
     )
     proof = ExpansionProof(project, texts, file)
     error: UnprovedError | None = None

@@ -80,9 +80,9 @@ def _expanded_link(
                 continue
             robot = read(expansion.document).robot
             if robot is not None:
-                found = next((one for one in robot.links.values() if _is_written_at(one, file, link.start)), None)
-                if found is not None:
-                    return robot, entry, found
+                expanded = next((one for one in robot.links.values() if _is_written_at(one, file, link.start)), None)
+                if expanded is not None:
+                    return robot, entry, expanded
     raise UnprovedError(phrase("no description that can be expanded has this link"))
 
 
@@ -95,11 +95,11 @@ def _is_written_at(link: Link, file: Path, offset: int) -> bool:
 
 def _without_inertial(root: Element, name: str) -> list[tuple[str, tuple[tuple[str, str], ...], str]]:
     """Return the elements of a robot without the inertia of one link."""
-    found = []
+    elements = []
     pending = [root]
     while pending:
         element = pending.pop()
-        found.append((element.tag, tuple(element.attributes.items()), element.text().strip()))
+        elements.append((element.tag, tuple(element.attributes.items()), element.text().strip()))
         is_link = element.tag == "link" and element.attributes.get("name") == name
         pending += [child for child in element.elements() if not (is_link and child.tag == "inertial")]
-    return found
+    return elements

@@ -124,8 +124,8 @@ def _parameter_lists(
     """Yield lists of parameters to try: all names that the elements use, those of the macro around them, none."""
     properties: set[str] = set()
     for other in project.index.related(file, texts):
-        found = occurrences_in(project.text(other, texts) or "", other)
-        properties |= {one.name for one in found if one.kind is NameKind.PROPERTY and one.is_definition}
+        all_names = occurrences_in(project.text(other, texts) or "", other)
+        properties |= {one.name for one in all_names if one.kind is NameKind.PROPERTY and one.is_definition}
     inside = [one for one in occurrences_in(text, file) if selected[0] <= one.start < selected[1]]
     own = {one.name for one in inside if one.kind is NameKind.PROPERTY and one.is_definition}
     blocks = {one.name for one in inside if _is_block_use(text, one)}

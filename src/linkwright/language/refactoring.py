@@ -104,8 +104,8 @@ def offers_at(text: str, file: Path, start: int, end: int, names: Iterable[NameD
 
 def _has_one_value(name: str, names: Iterable[NameDefinition]) -> bool:
     """Return whether a property has one definition, which is a value and not a block."""
-    found = [one for one in names if one.kind is NameKind.PROPERTY and one.name == name]
-    return len(found) == 1 and bool(found[0].detail)
+    definitions = [one for one in names if one.kind is NameKind.PROPERTY and one.name == name]
+    return len(definitions) == 1 and bool(definitions[0].detail)
 
 
 def refactor(

@@ -61,7 +61,7 @@ class WrittenElement:
 
     def value(self, attribute: str) -> str:
         """Return the value of an attribute as written; empty if there is none."""
-        return next((found.value or "" for found in self.tag.attributes() if found.name == attribute), "")
+        return next((one.value or "" for one in self.tag.attributes() if one.name == attribute), "")
 
 
 @lru_cache(maxsize=1)

@@ -39,8 +39,8 @@ def dependency_fix(manifest: Manifest, names: list[str]) -> Fix | None:
     dependencies = manifest.dependencies
     run_time = [dependency for dependency in dependencies if dependency.tag not in ("test_depend", "doc_depend")]
     last = (run_time or dependencies)[-1].element if dependencies else manifest.root.first("license")
-    found = None if last is None else element_range(last)
-    if source is None or last is None or found is None:
+    place = None if last is None else element_range(last)
+    if source is None or last is None or place is None:
         return None
     line = source.text.rfind("\n", 0, last.offset) + 1
     indent = source.text[line : last.offset]
@@ -48,7 +48,7 @@ def dependency_fix(manifest: Manifest, names: list[str]) -> Fix | None:
         return None
     newline = newline_of(source.text)
     text = "".join(f"{newline}{indent}<exec_depend>{name}</exec_depend>" for name in names)
-    return Fix((Edit(source.name, found[1], found[1], text),))
+    return Fix((Edit(source.name, place[1], place[1], text),))
 
 
 def setup_folders_fix(package: PackageContext, setup: SetupFile, folders: Iterable[str], *, safe: bool) -> Fix | None:
@@ -94,13 +94,13 @@ def cmake_folder_fix(source: SourceText, folder: str, *, safe: bool) -> Fix | No
         blanks = text[line : last.start].removesuffix('"')
         separator = f"{newline_of(text)}{blanks}" if not blanks.strip() else " "
         return Fix((Edit(source.name, end, end, f"{separator}{folder}"),), safe)
-    found = _LAST_COMMAND.search(text)
-    if found is None:
+    last_command = _LAST_COMMAND.search(text)
+    if last_command is None:
         return None
     destination = _SHARE if parent == "." else f"{_SHARE}/{parent}"
     newline = newline_of(text)
     command = f"install(DIRECTORY {folder} DESTINATION {destination}){newline}{newline}"
-    return Fix((Edit(source.name, found.start(), found.start(), command),), safe)
+    return Fix((Edit(source.name, last_command.start(), last_command.start(), command),), safe)
 
 
 def _last_folders(source: SourceText) -> Iterator[Token]:

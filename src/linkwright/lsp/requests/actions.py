@@ -149,10 +149,10 @@ def add_requests(server: LinkwrightServer) -> None:
         if path is None or positions is None or project is None:
             return None
         texts = server.texts()
-        found: list[types.CodeAction] = []
+        actions: list[types.CodeAction] = []
         if _may_be_requested(_KINDS[:2], only):
-            found += fixes(server, project.fixable(real(path), texts), asked, positions)
-            found += suppressions(server, project.findings(real(path), texts), asked, path, positions)
+            actions += fixes(server, project.fixable(real(path), texts), asked, positions)
+            actions += suppressions(server, project.findings(real(path), texts), asked, path, positions)
         if _may_be_requested(_KINDS[2:], only):
             start, end = positions.offset(asked.range.start), positions.offset(asked.range.end)
             names = await server.names(path)
@@ -163,8 +163,8 @@ def add_requests(server: LinkwrightServer) -> None:
                 if is_requested(offer.action.value, only)
                 and (offer.action is not Action.CONVERT_TO_XACRO or _makes_files(server))
             ]
-            found += await _refactorings(server, offers, path, positions, (start, end))
-        return [action for action in found if is_requested(_name(action.kind or ""), only)]
+            actions += await _refactorings(server, offers, path, positions, (start, end))
+        return [action for action in actions if is_requested(_name(action.kind or ""), only)]
 
     @server.feature(types.CODE_ACTION_RESOLVE)
     async def code_action_resolve(server: LinkwrightServer, action: types.CodeAction) -> types.CodeAction:
