@@ -10,9 +10,13 @@ from hypothesis import strategies as st
 from linkwright.language.colors import colors_in
 from linkwright.language.completion import complete
 from linkwright.language.definitions import definitions_in
+from linkwright.language.extraction import selected_value
 from linkwright.language.highlighting import highlights_in
 from linkwright.language.hover import definitions_at, explain_at
 from linkwright.language.links import file_references
+from linkwright.language.macro_extraction import selected_elements
+from linkwright.language.refactoring import offers_at
+from linkwright.language.suppressing import code_at, suppression
 from linkwright.lsp.positions import TextPositions
 from linkwright.lsp.requests.navigation import uses_in_file
 from linkwright.lsp.requests.texts import folds, format_edits, linked_tags, selections, symbols
@@ -50,6 +54,15 @@ def test_no_state_of_a_text_is_too_much(cut, name):
     assert all(0 <= color.start < color.end <= len(text) for color in colors_in(text))
     assert all(text[link.start : link.end] for link in file_references(text, file, FINDER))
     assert all(use.start <= use.end <= len(text) for use in uses_in_file(text, file, offset))
+    other = min(offset + 30, len(text))
+    for start, end in ((offset, offset), (offset, other)):
+        value = selected_value(text, start, end)
+        assert value is None or start <= value.start < value.end <= end or start == end
+        assert all(one.end <= end for one in selected_elements(text, start, end))
+        assert all(offer.title for offer in offers_at(text, file, start, end, names))
+    comment = suppression(text, file, "LW104", offset)
+    assert comment is None or 0 <= comment.start <= len(text)
+    code_at(text, offset)
     symbols(positions)
     linked_tags(positions, place)
     format_edits(positions, file)

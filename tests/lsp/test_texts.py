@@ -82,11 +82,14 @@ async def test_a_finding_is_fixed_by_its_action(editor):
     text = (editor.folder / "urdf/parts.xacro").read_text().replace('xyz="0 0 1"', 'xyz="0 0 2"')
     editor.open("urdf/parts.xacro", text)
     (found,) = await editor.until("urdf/parts.xacro", "LW221")
-    asked = types.CodeActionParams(editor.document("urdf/parts.xacro"), found.range, types.CodeActionContext([found]))
-    fix, everything = await editor.client.text_document_code_action_async(asked)
+    context = types.CodeActionContext([found], only=["quickfix", "source"])
+    asked = types.CodeActionParams(editor.document("urdf/parts.xacro"), found.range, context)
+    fix, everything, ignoring = await editor.client.text_document_code_action_async(asked)
     for action in (fix, everything):
-        ((edit,),) = action.edit.changes.values()
-        assert edit.new_text == "0 0 1"
+        (change,) = action.edit.document_changes
+        assert [edit.new_text for edit in change.edits] == ["0 0 1"]
+        assert change.text_document.version == 1
+    assert ignoring.title == "ignore LW221 here, with a reason"
     assert [fix.kind, everything.kind] == [types.CodeActionKind.QuickFix, types.CodeActionKind.SourceFixAll]
 
 

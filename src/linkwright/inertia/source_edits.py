@@ -19,7 +19,7 @@ from linkwright.xmltree.positions import attribute_name_range, attribute_value_r
 _REST_OF_LINE = lazy_pattern(r"(?:[ \t]*<!--(?:(?!-->).)*-->)*(?=[ \t]*\r?\n)")
 """Comments behind a start tag, which belong to it."""
 
-_EXPRESSION = lazy_pattern(r"\$[{(](?!find\b)")
+EXPRESSION = lazy_pattern(r"\$[{(](?!find\b)")
 """An expression whose value may change; a package's folder does not change the shape of a mesh."""
 
 
@@ -49,7 +49,7 @@ def edits_for(link: Link, properties: MassProperties) -> tuple[SourceText, list[
     inertial = written.first("inertial")
     if inertial is None:
         return source, [_new_block(source.text, written, properties)]
-    if _holds(inertial, _EXPRESSION):
+    if _holds(inertial, EXPRESSION):
         raise NotWritableError(phrase("its <inertial> is written with expressions"))
     return source, list(_changed_block(source.text, inertial, properties))
 
@@ -89,7 +89,7 @@ def written_link(link: Link) -> Element:
         raise NotWritableError(phrase("<{tag}> generates a part of it", tag=dynamic))
     for shape in (*written.elements("visual"), *written.elements("collision")):
         parts = (shape.first("origin"), shape.first("geometry"))
-        if any(part is not None and _holds(part, _EXPRESSION) for part in parts):
+        if any(part is not None and _holds(part, EXPRESSION) for part in parts):
             raise NotWritableError(
                 phrase("its shapes are written with expressions, and numbers in the file would not follow them")
             )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
@@ -44,14 +43,24 @@ def write_inertials(robot: Robot, properties: Mapping[str, MassProperties]) -> W
     Raises:
         LinkwrightError: INR201, a file cannot be written.
     """
-    times = Counter(_place(link) for link in robot.links.values())
+    return write_edits({name: partial(edits_of_link, robot, name, properties[name]) for name in properties})
 
-    def edits(name: str) -> tuple[SourceText, list[Replacement]]:
-        if times[_place(robot.links[name])] > 1:
-            raise NotWritableError(phrase("its text in the file defines several links"))
-        return edits_for(robot.links[name], properties[name])
 
-    return write_edits({name: partial(edits, name) for name in properties})
+def edits_of_link(robot: Robot, name: str, properties: MassProperties) -> tuple[SourceText, list[Replacement]]:
+    """Return a source text and the edits that give a link of a robot these mass properties.
+
+    Args:
+        robot: the robot, read from a file, possibly through xacro.
+        name: the name of the link.
+        properties: the mass properties in the link frame.
+
+    Raises:
+        NotWritableError: as for `edits_for`, or the text of the link defines other links, too.
+    """
+    place = _place(robot.links[name])
+    if any(_place(other) == place for other in robot.links.values() if other.name != name):
+        raise NotWritableError(phrase("its text in the file defines several links"))
+    return edits_for(robot.links[name], properties)
 
 
 def write_edits(edits_of: Mapping[str, Callable[[], tuple[SourceText, list[Replacement]]]]) -> Written:

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from linkwright.language.definitions import NameKind
+from linkwright.language.expressions import decoded
 from linkwright.language.grammar import PREFIX, XACRO
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.xacro.expressions.template import TokenKind, tokenize
@@ -21,8 +22,6 @@ from linkwright.xacro.faults import Fault
 from linkwright.xacro.macros import Parameter, parse_parameters
 from linkwright.xmltree.tokens import Kind, Token, TokenAttribute, tokens
 
-_ENTITY = lazy_pattern(r"&(?:lt|gt|quot|apos|amp);")
-_CHARACTERS = {"&lt;": "<", "&gt;": ">", "&quot;": '"', "&apos;": "'", "&amp;": "&"}
 _INNERMOST = lazy_pattern(r"\$\([^()]*\)|\$\{[^{}]*\}")
 _LINK, _JOINT = (NameKind.LINK,), (NameKind.JOINT,)
 _BOTH = (NameKind.LINK, NameKind.JOINT)
@@ -219,9 +218,8 @@ class _Scan:
         """
         if "$" not in text:
             return
-        text = _ENTITY.sub(lambda found: _CHARACTERS[found[0]].ljust(len(found[0])), text)
         try:
-            parts = tokenize(text)
+            parts = tokenize(decoded(text))
         except Fault:  # it is being typed
             return
         for part in parts:

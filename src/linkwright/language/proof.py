@@ -6,6 +6,7 @@ pass.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,8 +16,11 @@ from linkwright.diagnostics import LinkwrightError, Phrase, Span, display_path, 
 from linkwright.language.includes import real
 from linkwright.language.workspace import Workspace
 from linkwright.lint.targets import DESCRIPTIONS
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.xacro import Expansion, expand
 from linkwright.xmltree import Element, Overlay
+
+_COMMENT = lazy_pattern(r"\s*<!--.*?-->", re.DOTALL)
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -154,8 +158,11 @@ class ExpansionProof:
             UnprovedError: they differ, or cannot be compared.
         """
         for pair in self.pairs(edits, renamed):
-            if pair.text_before != pair.text_after:
-                raise UnprovedError(phrase("the robot of '{file}' would change", file=pair.entry.name))
+            before, after, name = pair.text_before, pair.text_after, pair.entry.name
+            if before != after and _COMMENT.sub("", before) == _COMMENT.sub("", after):
+                raise UnprovedError(phrase("the comments in the expansion of '{file}' would change", file=name))
+            if before != after:
+                raise UnprovedError(phrase("the robot of '{file}' would change", file=name))
 
     def _add_entries(self, file: Path) -> None:
         """Expand the descriptions that include a file, without the edits."""

@@ -188,6 +188,19 @@ class Workspace:
                         found.add([finding])
         return [finding for finding in found.all() if isinstance(finding, Finding)]
 
+    def findings(self, file: Path, texts: Mapping[Path, str]) -> list[Diagnostic]:
+        """Return the findings about a file with a location, if they are those of its current text.
+
+        Args:
+            file: the file.
+            texts: the texts of the open files.
+        """
+        found = UniqueFindings()
+        for result in self._results.values():
+            if result.texts.get(file) == texts.get(file):
+                found.add([one for one in result.findings if one.span is not None and real(one.span.file) == file])
+        return found.all()
+
     def _checked(self, subject: Path, texts: Mapping[Path, str]) -> tuple[Diagnostic, ...]:
         overlay = Overlay({str(path): text for path, text in texts.items()})
         if subject.is_dir():

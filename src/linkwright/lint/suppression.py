@@ -81,6 +81,7 @@ class Suppressions:
 
     def __init__(self, subject: Subject, settings: Settings) -> None:
         self._settings = settings
+        self._overlay = subject.description.overlay
         unused = find_rule(UNUSED)
         self._audits = unused is not None and settings.runs(unused) and subject.is_whole
         self._directives: dict[str, list[Directive]] = {}
@@ -114,8 +115,9 @@ class Suppressions:
 
     def _of(self, file: str) -> list[Directive]:
         if file not in self._directives:
+            text = None if self._overlay is None else self._overlay.text(file)
             try:
-                text = decode(read_bytes(file), file)
+                text = decode(read_bytes(file), file) if text is None else text
             except LinkwrightError:
                 text = ""
             self._directives[file] = list(directives(SourceText(file, text)))

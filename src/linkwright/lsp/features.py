@@ -4,7 +4,17 @@ from __future__ import annotations
 
 from lsprotocol import types
 
-from linkwright.lsp.requests import appearance, expansions, fixes, hints, names, navigation, renames, texts
+from linkwright.lsp.requests import (
+    actions,
+    appearance,
+    expansions,
+    hints,
+    names,
+    navigation,
+    renames,
+    texts,
+    virtual_documents,
+)
 from linkwright.lsp.server import LinkwrightServer, path_of
 
 
@@ -43,6 +53,6 @@ def make_server() -> LinkwrightServer:
         for change in watched.changes:
             server.file_saved(change.uri)
 
-    for requests in (texts, names, renames, fixes, hints, appearance, navigation, expansions):
+    for requests in (texts, names, renames, actions, hints, appearance, navigation, expansions, virtual_documents):
         requests.add_requests(server)
     return server

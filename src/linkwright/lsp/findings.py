@@ -10,6 +10,7 @@ from lsprotocol import types
 from linkwright.diagnostics import Diagnostic, Severity, Span
 from linkwright.diagnostics.translation import localized
 from linkwright.lsp.positions import TextOf
+from linkwright.lsp.rule_pages import page_uri
 
 _SEVERITIES = {
     Severity.ERROR: types.DiagnosticSeverity.Error,
@@ -21,7 +22,7 @@ _START = types.Range(types.Position(0, 0), types.Position(0, 0))
 
 
 def as_diagnostics(
-    findings: Iterable[Diagnostic], positions: TextOf, uri: Callable[[Path], str]
+    findings: Iterable[Diagnostic], positions: TextOf, uri: Callable[[Path], str], *, links_pages: bool = False
 ) -> list[types.Diagnostic]:
     """Convert the findings about a file.
 
@@ -29,8 +30,13 @@ def as_diagnostics(
         findings: the findings.
         positions: the texts of files.
         uri: returns the URI that the editor has for a file.
+        links_pages: whether the editor opens the page of a rule by its URI.
     """
-    return [_diagnostic(finding, positions, uri) for finding in findings]
+    diagnostics = [_diagnostic(finding, positions, uri) for finding in findings]
+    if links_pages:
+        for diagnostic in diagnostics:
+            diagnostic.code_description = types.CodeDescription(page_uri(str(diagnostic.code)))
+    return diagnostics
 
 
 def _diagnostic(finding: Diagnostic, positions: TextOf, uri: Callable[[Path], str]) -> types.Diagnostic:

@@ -134,6 +134,14 @@ class LinkwrightServer(LanguageServer):
         commands = experimental.get("commands") if isinstance(experimental, dict) else None
         return frozenset(map(str, commands)) if isinstance(commands, list) else frozenset()
 
+    @property
+    def opens_pages(self) -> bool:
+        """Whether the client follows the address of a finding's code, and asks for virtual documents."""
+        document, workspace = self.client_capabilities.text_document, self.client_capabilities.workspace
+        published = None if document is None else document.publish_diagnostics
+        asks = workspace is not None and workspace.text_document_content is not None
+        return asks and published is not None and bool(published.code_description_support)
+
     async def when_indexed(self) -> None:
         """Wait until the folders have been searched."""
         await self._is_indexed.wait()
@@ -201,7 +209,7 @@ class LinkwrightServer(LanguageServer):
             self.text_document_publish_diagnostics(
                 types.PublishDiagnosticsParams(
                     uri,
-                    as_diagnostics(findings, positions, self.uri_of),
+                    as_diagnostics(findings, positions, self.uri_of, links_pages=self.opens_pages),
                     None if document is None else document.version,
                 )
             )

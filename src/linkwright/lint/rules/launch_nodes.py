@@ -8,19 +8,17 @@ from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, counted, joined, nearest, phrase, quoted, quoted_names
 from linkwright.lint.dependencies import depends_indirectly_on, is_always_installed, would_form_cycle
-from linkwright.lint.fix import Edit, Fix
+from linkwright.lint.package_fixes import dependency_fix
 from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.rules.package_manifest import PackageRule
 from linkwright.lint.rules.package_python import is_ament_python
 from linkwright.lint.subject import Subject
 from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.packages.share_layout import substituted_executables
-from linkwright.xmltree.patches import element_range
 
 if TYPE_CHECKING:
     from linkwright.lint.package import PackageContext
     from linkwright.packages.readers.launch_files import LaunchFile
-    from linkwright.packages.readers.package_xml import Manifest
 
 OTHERS = {
     "rviz2": frozenset({"rviz2"}),
@@ -202,7 +200,7 @@ class UndeclaredLaunchDependency(Rule):
         hint = counted(
             "add <exec_depend>{name}</exec_depend>", "add an <exec_depend> for each", len(names), name=names[0]
         )
-        fix = _dependency_fix(manifest, names)
+        fix = dependency_fix(manifest, names)
         yield self.report(message, manifest.root, notes=[missing[name] for name in names], hint=hint, fix=fix)
 
 
@@ -226,29 +224,6 @@ def _used_packages(package: PackageContext) -> dict[str, Note]:
             found.setdefault("xacro", Note(phrase("'xacro' is run here"), span))
     found.pop(package.name, None)
     return {name: note for name, note in found.items() if re.fullmatch(r"[a-zA-Z]\w*", name)}
-
-
-def _dependency_fix(manifest: Manifest, names: list[str]) -> Fix | None:
-    """Return the fix that adds dependencies to ``package.xml``, or None if this is not possible.
-
-    The new lines follow the last dependency that is not only for tests, and have the indentation of this dependency.
-    """
-    source = manifest.document.source
-    if source is None or not manifest.dependencies:
-        return None
-    run_time = [
-        dependency for dependency in manifest.dependencies if dependency.tag not in ("test_depend", "doc_depend")
-    ]
-    last = (run_time or manifest.dependencies)[-1].element
-    found = element_range(last)
-    if found is None:
-        return None
-    line = source.text.rfind("\n", 0, last.offset) + 1
-    indent = source.text[line : last.offset]
-    if indent.strip():
-        return None
-    text = "".join(f"\n{indent}<exec_depend>{name}</exec_depend>" for name in names)
-    return Fix((Edit(source.name, found[1], found[1], text),))
 
 
 def _executables_of(name: str) -> frozenset[str] | None:

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Iterator
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, nearest, phrase, quoted
 from linkwright.lint.made_files import is_ignored_by_git, is_made_by_cmake, submodule_of
+from linkwright.lint.package_fixes import cmake_folder_fix, setup_folders_fix
 from linkwright.lint.rules.package_manifest import PackageRule
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_typing import TYPE_CHECKING
@@ -147,7 +148,10 @@ class FolderNotInstalled(PackageRule):
                 "add ('share/{name}/{folder}', glob('{folder}/*')) to data_files", name=package.name, folder=folder
             )
             severity = self._severity(package, [folder, *others])
-            yield self.report(message, span=setup.data_files_span, source=setup.source, hint=hint, severity=severity)
+            fix = setup_folders_fix(package, setup, [folder, *others], safe=severity is not Severity.INFO)
+            yield self.report(
+                message, span=setup.data_files_span, source=setup.source, hint=hint, fix=fix, severity=severity
+            )
 
     def _check_cmake(self, package: PackageContext, cmake: CMakeFile) -> Iterator[Diagnostic]:
         if not cmake.is_complete or cmake.foreign or not cmake.is_ament:
@@ -163,10 +167,16 @@ class FolderNotInstalled(PackageRule):
         )
         for folder in dict.fromkeys(lacking):
             message = phrase("CMakeLists.txt does not install the folder '{folder}'", folder=folder)
-            hint = phrase("add install(DIRECTORY {folder} DESTINATION share/${{PROJECT_NAME}})", folder=folder)
+            parent = f"/{folder.rpartition('/')[0]}" if "/" in folder else ""
+            hint = phrase(
+                "add install(DIRECTORY {folder} DESTINATION share/${{PROJECT_NAME}}{parent})",
+                folder=folder,
+                parent=parent,
+            )
             span = cmake.span(cmake.project) if cmake.project else None
             severity = self._severity(package, [folder])
-            yield self.report(message, span=span, source=cmake.source, hint=hint, severity=severity)
+            fix = cmake_folder_fix(cmake.source, folder, safe=severity is not Severity.INFO)
+            yield self.report(message, span=span, source=cmake.source, hint=hint, fix=fix, severity=severity)
 
     def _severity(self, package: PackageContext, folders: Iterable[str]) -> Severity:
         """Return the severity, an information for settings that no launch file of the package reads."""

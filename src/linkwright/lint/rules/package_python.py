@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator
 
 from linkwright.diagnostics import Diagnostic, Severity, foreign, phrase
+from linkwright.lint.package_fixes import setup_file_fix
 from linkwright.lint.rules.package_install import checkout_hint, near_file
 from linkwright.lint.rules.package_manifest import PackageRule
 from linkwright.loading.deferred import lazy_pattern
@@ -134,20 +135,23 @@ class MarkerNotInstalled(PackageRule):
         marked = any(item.destination == _MARKERS or item.text.startswith("resource/") for item in setup.installed)
         if not marked:
             message = phrase("setup.py does not install the marker file of the package '{name}'", name=package.name)
+            has_marker = (package.folder / "resource" / package.name).is_file()
             hint = (
                 phrase("add ('{markers}', ['resource/{name}']) to data_files", markers=_MARKERS, name=package.name)
-                if (package.folder / "resource" / package.name).is_file()
+                if has_marker
                 else phrase(
                     "create an empty file 'resource/{name}', and add ('{markers}', ['resource/{name}']) to data_files",
                     markers=_MARKERS,
                     name=package.name,
                 )
             )
-            yield self.report(message, span=setup.data_files_span, source=setup.source, hint=hint)
+            fix = setup_file_fix(package, setup, _MARKERS, f"resource/{package.name}") if has_marker else None
+            yield self.report(message, span=setup.data_files_span, source=setup.source, hint=hint, fix=fix)
         if not any(item.text == "package.xml" for item in setup.installed):
             message = phrase("setup.py does not install package.xml")
             hint = phrase("add ('share/{name}', ['package.xml']) to data_files", name=package.name)
-            yield self.report(message, span=setup.data_files_span, source=setup.source, hint=hint)
+            fix = setup_file_fix(package, setup, "", "package.xml")
+            yield self.report(message, span=setup.data_files_span, source=setup.source, hint=hint, fix=fix)
 
 
 class EntryPointMissing(PackageRule):

@@ -307,6 +307,7 @@ class UndeclaredPackage(Rule):
         if subject.expansion is None:
             return
         from linkwright.lint.dependencies import would_form_cycle
+        from linkwright.lint.package_fixes import dependency_fix
         from linkwright.xacro.faults import attribute_part
 
         facts = subject.xacro
@@ -332,7 +333,10 @@ class UndeclaredPackage(Rule):
                     )
                     hint = phrase("add <exec_depend>{name}</exec_depend> to package.xml", name=name)
                     severity = Severity.INFO if is_optional else None
-                    yield self.report(message, use.element, use.attribute, span=span, hint=hint, severity=severity)
+                    fix = dependency_fix(package.manifest, [name])
+                    yield self.report(
+                        message, use.element, use.attribute, span=span, hint=hint, fix=fix, severity=severity
+                    )
 
 
 class RecursiveMacro(XacroRule):

@@ -94,6 +94,23 @@ def source_of(server: LinkwrightServer, uri: str, place: types.Position) -> list
     return [types.Location(server.uri_of(element.file), source.range(element.source_start, element.source_end))]
 
 
+async def content(server: LinkwrightServer, uri: str) -> str | None:
+    """Return the text of an expansion, or None for the URI of another document.
+
+    Raises:
+        JsonRpcException: RequestFailed, the description cannot be expanded.
+    """
+    description, project, texts = description_of(uri), server.project, server.texts()
+    if description is None or project is None:
+        return None
+    try:
+        expansion = await server.in_thread(lambda: expanded_text(project, texts, *description))
+    except LinkwrightError as error:
+        message = "\n".join(localized(diagnostic.message) for diagnostic in error.diagnostics)
+        raise JsonRpcException(message, code=int(types.LSPErrorCodes.RequestFailed)) from None
+    return expansion.text
+
+
 def add_requests(server: LinkwrightServer) -> None:
     """Add the requests of this module to a server."""
 
@@ -108,17 +125,3 @@ def add_requests(server: LinkwrightServer) -> None:
         await server.when_indexed()
         offset, encoding = positions.offset(asked.position), server.workspace.position_encoding or UTF_16
         return await server.in_thread(lambda: implementations(project, texts, real(path), offset, encoding))
-
-    @server.feature(types.WORKSPACE_TEXT_DOCUMENT_CONTENT, types.TextDocumentContentOptions([SCHEME]))
-    async def text_document_content(
-        server: LinkwrightServer, asked: types.TextDocumentContentParams
-    ) -> types.TextDocumentContentResult | None:
-        description, project, texts = description_of(asked.uri), server.project, server.texts()
-        if description is None or project is None:
-            return None
-        try:
-            expansion = await server.in_thread(lambda: expanded_text(project, texts, *description))
-        except LinkwrightError as error:
-            message = "\n".join(localized(diagnostic.message) for diagnostic in error.diagnostics)
-            raise JsonRpcException(message, code=int(types.LSPErrorCodes.RequestFailed)) from None
-        return types.TextDocumentContentResult(expansion.text)

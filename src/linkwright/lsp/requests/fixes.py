@@ -1,93 +1,104 @@
-"""Code actions: the fixes of findings."""
+"""Quick fixes: the fixes of findings, all safe fixes at once, and comments that suppress findings."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from lsprotocol import types
 
-from linkwright.diagnostics import phrase
+from linkwright.diagnostics import Diagnostic, Span, phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.language.includes import real
+from linkwright.language.proof import Edit
+from linkwright.language.suppressing import suppression
 from linkwright.lint.finding import Finding
 from linkwright.lint.fix import Fix
-from linkwright.lsp.positions import TextOf
+from linkwright.lsp.edits import document_edits
+from linkwright.lsp.positions import TextPositions
 from linkwright.lsp.server import LinkwrightServer
 
 
-def actions(
-    findings: Sequence[Finding],
-    wanted: types.Range,
-    positions: TextOf,
-    uri: Callable[[Path], str],
-    reported: Iterable[types.Diagnostic],
-) -> list[types.CodeAction]:
-    """Return the fixes of the findings about a file that touch a range, and a fix of all safe ones.
+def fixes(
+    server: LinkwrightServer, findings: Sequence[Finding], asked: types.CodeActionParams, positions: TextPositions
+) -> Iterator[types.CodeAction]:
+    """Yield the fixes of the findings that touch a range, and a fix of all safe ones.
 
     Args:
+        server: the server.
         findings: the findings about the file that have a fix.
-        wanted: the range that the editor asks about.
-        positions: the texts of files.
-        uri: returns the URI that the editor has for a file.
-        reported: the diagnostics that the editor shows there.
+        asked: the request, with the range and the diagnostics that the editor shows there.
+        positions: the text of the file.
     """
-    found = []
     for finding in findings:
-        own = positions(Path(finding.span.file)) if finding.span is not None else None
-        if own is None or finding.span is None or finding.fix is None:
+        edits = _edits([finding.fix] if finding.fix is not None else [])
+        if finding.fix is None or not edits or not _touches(finding.span, asked.range, positions):
             continue
-        place = own.range_of(finding.span)
-        if place.end.line < wanted.start.line or place.start.line > wanted.end.line:
-            continue
-        edit = _edit([finding.fix], positions, uri)
-        if edit is not None:
-            title = localized(finding.hint) if finding.hint else localized(phrase("fix {code}", code=finding.code))
-            about = [diagnostic for diagnostic in reported if diagnostic.code == finding.code]
-            found.append(
-                types.CodeAction(
-                    title, types.CodeActionKind.QuickFix, about or None, is_preferred=finding.fix.safe, edit=edit
-                )
-            )
-    safe = [finding.fix for finding in findings if finding.fix is not None and finding.fix.safe]
-    edit = _edit(safe, positions, uri)
-    if edit is not None:
+        title = localized(finding.hint) if finding.hint else localized(phrase("fix {code}", code=finding.code))
+        yield types.CodeAction(
+            title,
+            types.CodeActionKind.QuickFix,
+            _reported(asked, finding) or None,
+            is_preferred=finding.fix.safe,
+            edit=document_edits(server, edits),
+        )
+    edits = _edits([finding.fix for finding in findings if finding.fix is not None and finding.fix.safe])
+    if edits:
         title = localized(phrase("fix everything that is safe to fix in this file"))
-        found.append(types.CodeAction(title, types.CodeActionKind.SourceFixAll, edit=edit))
-    return found
+        yield types.CodeAction(title, types.CodeActionKind.SourceFixAll, edit=document_edits(server, edits))
 
 
-def _edit(fixes: Iterable[Fix], positions: TextOf, uri: Callable[[Path], str]) -> types.WorkspaceEdit | None:
-    """Return the edits of fixes that do not overlap earlier ones; None if there is none."""
-    changed: dict[str, list[tuple[int, int, types.TextEdit]]] = {}
+def suppressions(
+    server: LinkwrightServer,
+    findings: Iterable[Diagnostic],
+    asked: types.CodeActionParams,
+    path: Path,
+    positions: TextPositions,
+) -> Iterator[types.CodeAction]:
+    """Yield the comments that suppress the findings that touch a range, each with a place for the reason.
+
+    Args:
+        server: the server.
+        findings: the findings about the file.
+        asked: the request, with the range and the diagnostics that the editor shows there.
+        path: the file.
+        positions: the text of the file.
+    """
+    edits: dict[Edit, tuple[str, list[types.Diagnostic]]] = {}
+    for finding in findings:
+        if finding.span is not None and _touches(finding.span, asked.range, positions):
+            offset = positions.offset(positions.range_of(finding.span).start)
+            edit = suppression(positions.text, real(path), finding.code, offset)
+            if edit is not None:
+                edits.setdefault(edit, (finding.code, []))[1].extend(_reported(asked, finding))
+    for edit, (code, reported) in edits.items():
+        title = localized(phrase("ignore {code} here, with a reason", code=code))
+        yield types.CodeAction(
+            title, types.CodeActionKind.QuickFix, reported or None, edit=document_edits(server, [edit])
+        )
+
+
+def _touches(span: Span | None, wanted: types.Range, positions: TextPositions) -> bool:
+    """Return whether a finding is on the lines of a range."""
+    if span is None:
+        return False
+    place = positions.range_of(span)
+    return place.end.line >= wanted.start.line and place.start.line <= wanted.end.line
+
+
+def _reported(asked: types.CodeActionParams, finding: Diagnostic) -> list[types.Diagnostic]:
+    return [diagnostic for diagnostic in asked.context.diagnostics if diagnostic.code == finding.code]
+
+
+def _edits(fixes: Iterable[Fix]) -> list[Edit]:
+    """Return the edits of fixes that do not overlap earlier ones."""
+    edits: list[Edit] = []
     for fix in fixes:
-        new: list[tuple[str, tuple[int, int, types.TextEdit]]] = []
-        for edit in fix.edits:
-            text = positions(Path(edit.source_file))
-            if text is None:
-                break
-            place = types.TextEdit(text.range(edit.start, edit.end), edit.replacement)
-            new.append((uri(Path(edit.source_file)), (edit.start, edit.end, place)))
-        else:
-            if all(_fits(edit, changed.get(file, ())) for file, edit in new):
-                for file, edit_of_file in new:
-                    changed.setdefault(file, []).append(edit_of_file)
-    edits = {file: [edit for *_, edit in sorted(found, key=lambda each: each[:2])] for file, found in changed.items()}
-    return types.WorkspaceEdit(edits) if edits else None
+        new = [Edit(real(one.source_file), one.start, one.end, one.replacement) for one in fix.edits]
+        if all(_fits(edit, edits) for edit in new):
+            edits += new
+    return edits
 
 
-def _fits(edit: tuple[int, int, types.TextEdit], others: Iterable[tuple[int, int, types.TextEdit]]) -> bool:
-    return all(edit[1] <= start or end <= edit[0] for start, end, _ in others)
-
-
-def add_requests(server: LinkwrightServer) -> None:
-    """Add the requests of this module to a server."""
-    kinds = types.CodeActionOptions([types.CodeActionKind.QuickFix, types.CodeActionKind.SourceFixAll])
-
-    @server.feature(types.TEXT_DOCUMENT_CODE_ACTION, kinds)
-    def code_action(server: LinkwrightServer, asked: types.CodeActionParams) -> list[types.CodeAction] | None:
-        path, positions = server.text(asked.text_document)
-        if positions is None or server.project is None:
-            return None
-        found = server.project.fixable(real(path), server.texts())
-        return actions(found, asked.range, server.positions, server.uri_of, asked.context.diagnostics)
+def _fits(edit: Edit, others: Iterable[Edit]) -> bool:
+    return all(edit.file != other.file or edit.end < other.start or other.end < edit.start for other in others)

@@ -15,11 +15,13 @@ from linkwright.language.facts import facts_at
 from linkwright.language.hover import definitions_at, explain_at
 from linkwright.language.includes import real
 from linkwright.language.links import file_references
+from linkwright.language.suppressing import code_at
 from linkwright.language.values import ValuedText, described_values, value_at
 from linkwright.language.workspace import Workspace
+from linkwright.lint.explain import find_page
 from linkwright.lsp.positions import TextOf, TextPositions
 from linkwright.lsp.requests.expansions import source_of
-from linkwright.lsp.server import LinkwrightServer
+from linkwright.lsp.server import LinkwrightServer, path_of
 
 _KINDS = {
     ItemKind.ELEMENT: types.CompletionItemKind.Class,
@@ -104,6 +106,18 @@ def hover(
     return types.Hover(_markdown("\n\n".join(parts)), None if span is None else positions.range(*span))
 
 
+def suppression_hover(server: LinkwrightServer, asked: types.HoverParams) -> types.Hover | None:
+    """Return the page of the rule whose code is at a place in a suppression comment, or None."""
+    path = path_of(asked.text_document.uri)
+    positions = None if path is None else server.positions(path)
+    suppressed = None if positions is None else code_at(positions.text, positions.offset(asked.position))
+    page = None if suppressed is None else find_page(suppressed[0])
+    if positions is None or suppressed is None or page is None:
+        return None
+    code, start = suppressed
+    return types.Hover(_markdown(page.markdown), positions.range(start, start + len(code)))
+
+
 def definitions(
     names: Sequence[NameDefinition],
     positions: TextPositions,
@@ -149,6 +163,9 @@ def add_requests(server: LinkwrightServer) -> None:
     async def hover_request(server: LinkwrightServer, asked: types.HoverParams) -> types.Hover | None:
         path, positions = server.text(asked.text_document)
         project, texts = server.project, server.texts()
+        suppressed = suppression_hover(server, asked)
+        if suppressed is not None:
+            return suppressed
         if positions is None or project is None:
             return None
         known, values = await server.names(path), await server.values(path)

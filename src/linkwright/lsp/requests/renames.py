@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from itertools import groupby
 from pathlib import Path
 
 from lsprotocol import types
@@ -17,25 +16,8 @@ from linkwright.language.mentions import Mention
 from linkwright.language.occurrences import Occurrence
 from linkwright.language.proof import Edit
 from linkwright.language.renaming import occurrence_at, references, rename
+from linkwright.lsp.edits import document_edits
 from linkwright.lsp.server import LinkwrightServer, path_of
-
-
-def document_edits(server: LinkwrightServer, edits: Iterable[Edit]) -> types.WorkspaceEdit:
-    """Return edits for the editor, with the versions of the open files: it applies all or none."""
-    changes: list[types.TextDocumentEdit] = []
-    for file, own in groupby(sorted(edits), key=lambda edit: edit.file):
-        positions = server.positions(file)
-        if positions is not None:
-            uri = server.uri_of(file)
-            document = server.workspace.text_documents.get(uri)
-            version = None if document is None else document.version
-            changes.append(
-                types.TextDocumentEdit(
-                    types.OptionalVersionedTextDocumentIdentifier(uri, version),
-                    [types.TextEdit(positions.range(edit.start, edit.end), edit.text) for edit in own],
-                )
-            )
-    return types.WorkspaceEdit(document_changes=changes)
 
 
 def _unchanged(server: LinkwrightServer, mentions: Iterable[Mention]) -> str:

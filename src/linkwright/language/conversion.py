@@ -1,0 +1,90 @@
+"""Conversion of a URDF file to xacro, as a new file beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from linkwright.diagnostics import LinkwrightError, display_path, phrase
+from linkwright.language.proof import UnprovedError
+from linkwright.language.workspace import Workspace
+from linkwright.language.written import written_elements
+from linkwright.lint.rules.xacro_tags import ADDRESS
+from linkwright.loading.deferred import lazy_pattern
+from linkwright.xacro import expand
+from linkwright.xmltree import Element, Overlay, parse
+from linkwright.xmltree.tokens import Kind, tokens
+
+_BEFORE_BRACKET = lazy_pattern(r"\$+(?=[{(])")
+
+
+@dataclass(frozen=True, slots=True)
+class NewFile:
+    """A file that does not exist yet, and its text."""
+
+    file: Path
+    text: str
+
+
+def can_be_converted(text: str, file: Path) -> bool:
+    """Return whether a file is a URDF without xacro."""
+    if not file.name.endswith(".urdf"):
+        return False
+    root = next(iter(written_elements(text)), None)
+    return root is not None and root.name == "robot" and "xmlns:xacro" not in root.tag.text
+
+
+def convert_to_xacro(project: Workspace, texts: Mapping[Path, str], file: Path, text: str) -> NewFile:
+    """Return a xacro file that expands to the elements of a URDF file.
+
+    Args:
+        project: the workspace.
+        texts: the texts of the open files.
+        file: the URDF file.
+        text: its text.
+
+    Raises:
+        UnprovedError: the file exists, or its expansion would differ from the URDF.
+    """
+    new = file.with_name(f"{file.name}.xacro")
+    if new.exists() or new in texts:
+        raise UnprovedError(phrase("'{file}' already exists", file=display_path(str(new))))
+    if not project.contains(new):
+        raise UnprovedError(phrase("'{file}' is outside of the workspace", file=display_path(str(new))))
+    root = next(iter(written_elements(text)), None)
+    if root is None:
+        raise UnprovedError(phrase("the file has no element"))
+    at = root.tag.name_start + len(root.name)
+    name = next((attribute for attribute in root.tag.attributes() if attribute.name == "name"), None)
+    at = at if name is None else name.end
+    written = f'{_escaped(text[:at])} xmlns:xacro="{ADDRESS}"{_escaped(text[at:])}'
+    try:
+        overlay = Overlay({str(new): written})
+        expansion = str(expand(new, {}, packages=project.finder(file), overlay=overlay))
+        first, second = (_normal(parse(one, file.name).root) for one in (text, expansion))
+    except LinkwrightError as error:
+        raise UnprovedError(error.diagnostics[0].message, error.diagnostics[0].span) from None
+    if first != second:
+        raise UnprovedError(phrase("the robot of '{file}' would change", file=file.name))
+    return NewFile(new, written)
+
+
+def _escaped(text: str) -> str:
+    """Return a text in which dollars before brackets have no meaning for xacro, outside of comments."""
+    return "".join(
+        token.text if token.kind is Kind.COMMENT else _BEFORE_BRACKET.sub(lambda dollars: f"${dollars[0]}", token.text)
+        for token in tokens(text)
+    )
+
+
+def _normal(root: Element) -> list[tuple[object, ...]]:
+    """Return the elements with their attributes and texts, without the declaration of xacro."""
+    return [
+        (
+            element.tag,
+            tuple(sorted(item for item in element.attributes.items() if item[0] != "xmlns:xacro")),
+            " ".join(element.text().split()),
+        )
+        for element in root.walk()
+    ]

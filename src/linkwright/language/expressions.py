@@ -1,0 +1,108 @@
+"""Python expressions in the texts of xacro files, as they are written there."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from linkwright.loading.deferred import lazy_pattern
+from linkwright.xacro.expressions.template import TokenKind, tokenize
+from linkwright.xacro.faults import Fault
+
+_ENTITY = lazy_pattern(r"&(?:lt|gt|quot|apos|amp);")
+_SUBSTITUTION = lazy_pattern(r"\$\([^()]*\)")
+_CHARACTERS = {"&lt;": "<", "&gt;": ">", "&quot;": '"', "&apos;": "'", "&amp;": "&"}
+
+
+class WrittenExpression(NamedTuple):
+    """An expression in ``${...}``.
+
+    Attributes:
+        start: the offset of the ``$`` in the text that contains it.
+        end: the offset after the closing brace.
+        source: the expression as written.
+    """
+
+    start: int
+    end: int
+    source: str
+
+    @property
+    def inside(self) -> tuple[int, int]:
+        """The offsets of the text between the braces."""
+        return self.end - 1 - len(self.source), self.end - 1
+
+
+def decoded(text: str) -> str:
+    """Return a text with a character, and blanks up to the same length, in place of each entity of XML."""
+    return _ENTITY.sub(lambda entity: _CHARACTERS[entity[0]].ljust(len(entity[0])), text)
+
+
+def expressions_in(text: str) -> Iterator[WrittenExpression]:
+    """Yield the ``${...}`` of an attribute's value or of character data; nothing if it is incomplete.
+
+    Args:
+        text: the text, as written.
+    """
+    if "$" not in text:
+        return
+    try:
+        parts = tokenize(decoded(text))
+    except Fault:  # it is being typed
+        return
+    for part in parts:
+        if part.kind is TokenKind.EXPRESSION:
+            yield WrittenExpression(part.start, part.end, text[part.end - 1 - len(part.text) : part.end - 1])
+
+
+def parsed(source: str) -> ast.expr | None:
+    """Return the syntax tree of an expression as written, or None if it is not valid.
+
+    Offsets in the tree are those of the source without leading blanks. A ``$(...)`` in it counts as a name.
+    """
+    body = _SUBSTITUTION.sub(lambda command: "_" * len(command[0]), re.sub(r"[\n\r\t]", " ", decoded(source)).strip())
+    try:
+        return ast.parse(body, mode="eval").body
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return None
+
+
+def is_part(source: str, start: int, end: int) -> bool:
+    """Return whether a range of an expression is a subexpression of it that needs nothing of the rest.
+
+    Args:
+        source: the expression as written.
+        start: the offset of the first character of the range.
+        end: the offset after its last character.
+    """
+    inner = parsed(source[start:end])
+    if inner is None or isinstance(inner, (ast.Starred, ast.NamedExpr)):
+        return False
+    outer = parsed(f"{source[:start]}({source[start:end]}){source[end:]}")
+    whole = parsed(source)
+    if outer is None or whole is None or ast.dump(outer) != ast.dump(whole):
+        return False
+    bound = {node.arg for node in ast.walk(whole) if isinstance(node, ast.arg)}
+    bound |= {node.id for node in ast.walk(whole) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
+    return bound.isdisjoint(node.id for node in ast.walk(inner) if isinstance(node, ast.Name))
+
+
+def inserted(source: str, start: int, end: int, new: str) -> str | None:
+    """Return an expression with another one in place of a name, in parentheses where precedence needs them.
+
+    Args:
+        source: the expression as written.
+        start: the offset of the name.
+        end: the offset after the name.
+        new: the other expression as written.
+
+    Returns:
+        The new expression, or None if one of them is not valid.
+    """
+    enclosed, bare = f"{source[:start]}({new}){source[end:]}", f"{source[:start]}{new}{source[end:]}"
+    first, second = parsed(enclosed), parsed(bare)
+    if first is None:
+        return None
+    return bare if second is not None and ast.dump(first) == ast.dump(second) else enclosed

@@ -1,0 +1,244 @@
+"""Extraction of a value to a property."""
+
+from __future__ import annotations
+
+import builtins
+import keyword
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from linkwright.diagnostics import phrase
+from linkwright.language.definitions import NameKind
+from linkwright.language.expressions import expressions_in, is_part
+from linkwright.language.grammar import PREFIX
+from linkwright.language.occurrences import occurrences_in
+from linkwright.language.proof import Edit, ExpansionProof, UnprovedError
+from linkwright.language.workspace import Workspace
+from linkwright.language.written import MACRO, WrittenElement, innermost, written_elements
+from linkwright.loading.deferred import lazy_pattern
+from linkwright.xacro.expressions.symbols import MATHEMATICS
+from linkwright.xmltree.patches import indentation, newline_of
+from linkwright.xmltree.tokens import Kind, TokenAttribute, tokens
+
+_NUMBER = lazy_pattern(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+_COMPONENTS = {"xyz": ("x", "y", "z"), "rpy": ("roll", "pitch", "yaw"), "size": ("x", "y", "z")}
+"""Attributes with several numbers, and the names of the numbers."""
+_NAMING = frozenset({(MACRO, "params"), ("xacro:include", "ns"), ("xacro:property", "scope")})
+"""Attributes whose value is not evaluated as a text."""
+_DEFINING = frozenset({"xacro:macro", "xacro:property", "xacro:arg", "xacro:insert_block"})
+"""Elements whose ``name`` is not evaluated as a text."""
+_GROUPS = ("math", "python", "xacro")
+"""The groups of functions in expressions."""
+
+
+@dataclass(frozen=True, slots=True)
+class ValueSelection:
+    """A value, or a part of one, that can become a property.
+
+    Attributes:
+        element: the element that has the value as an attribute or text.
+        attribute: the name of the attribute; empty for the text of the element.
+        start: the character offset of the selection.
+        end: the offset after it.
+        in_expression: whether it is a part of an expression, and not of the text around one.
+        component: the name of the number, such as ``x``; empty if it is not one of several.
+    """
+
+    element: WrittenElement
+    attribute: str
+    start: int
+    end: int
+    in_expression: bool
+    component: str = ""
+
+
+def selected_value(text: str, start: int, end: int) -> ValueSelection | None:
+    """Return the value that a selection covers, or the number at a cursor; None if it cannot become a property.
+
+    Args:
+        text: the text of a file.
+        start: the character offset of the selection.
+        end: the offset after it; equal to `start` for a cursor.
+    """
+    elements = written_elements(text)
+    element = innermost(elements, start)
+    if element is None or element.top is None:
+        return None
+    if start < element.tag.end:
+        attribute = next((one for one in element.tag.attributes() if one.value_start <= start <= one.value_end), None)
+        if attribute is None or attribute.value is None or not _is_evaluated(element, attribute):
+            return None
+        return _selection(element, attribute.name, attribute.value, attribute.value_start, (start, end))
+    for token in tokens(text[element.tag.end : element.end]):
+        first = element.tag.end + token.start
+        if token.kind is Kind.TEXT and first <= start <= first + len(token.text) and not element.children:
+            return _selection(element, "", token.text, first, (start, end))
+    return None
+
+
+def _is_evaluated(element: WrittenElement, attribute: TokenAttribute) -> bool:
+    key = attribute.name
+    if (element.name, key) in _NAMING or key.startswith("xmlns") or not attribute.quote:
+        return False
+    return key != "name" or element.name not in _DEFINING
+
+
+def _selection(
+    element: WrittenElement, attribute: str, value: str, at: int, selected: tuple[int, int]
+) -> ValueSelection | None:
+    """Return the selection in a value that begins at an offset, without the blanks at its ends."""
+    start, end = selected[0] - at, selected[1] - at
+    if start == end:
+        number = next((match for match in _NUMBER.finditer(value) if match.start() <= start <= match.end()), None)
+        if number is None:
+            return None
+        start, end = number.span()
+    if not 0 <= start < end <= len(value):
+        return None
+    chosen = value[start:end]
+    start, end = start + len(chosen) - len(chosen.lstrip()), end - len(chosen) + len(chosen.rstrip())
+    if start >= end:
+        return None
+    around = next((one for one in expressions_in(value) if one.inside[0] <= start and end <= one.inside[1]), None)
+    if around is not None:
+        low = around.inside[0]
+        is_valid = is_part(around.source, start - low, end - low)
+    else:
+        is_valid = _is_plain_part(value, start, end)
+    if not is_valid:
+        return None
+    return ValueSelection(
+        element, attribute, at + start, at + end, around is not None, _component(attribute, value, start, end)
+    )
+
+
+def _is_plain_part(value: str, start: int, end: int) -> bool:
+    """Return whether a range of a value cuts no expression, and no word unless it is all literal."""
+    if "$" in value and any(one.start < edge < one.end for edge in (start, end) for one in expressions_in(value)):
+        return False
+    cut = value[start:end]
+    if cut.count("$(") != cut.count(")") or cut.count("${") != cut.count("}") or "$$" in value:
+        return False
+    if re.search(r"\$\([^()]*$", value[:start]):
+        return False
+    ends_in_number = re.search(r"[\w.]$", value[:start]) and re.match(r"[\d.+-]", cut)
+    return not ends_in_number and not (re.search(r"[\w.]$", cut) and re.match(r"[\d.]", value[end:]))
+
+
+def _component(attribute: str, value: str, start: int, end: int) -> str:
+    names, words = _COMPONENTS.get(attribute, ()), value.split()
+    if "$" in value or len(words) != len(names) or value.split() == [value[start:end]]:
+        return ""
+    index = len(value[:start].split())
+    return names[index] if index < len(names) and value[start:end] == words[index] else ""
+
+
+def extract_property(
+    project: Workspace, texts: Mapping[Path, str], file: Path, text: str, selection: ValueSelection
+) -> tuple[Edit, ...]:
+    """Return the proved edits that define a property with a value and use it in place of the value.
+
+    Args:
+        project: the workspace.
+        texts: the texts of the open files.
+        file: the file.
+        text: its text.
+        selection: the value.
+
+    Raises:
+        UnprovedError: the expansions would differ.
+    """
+    element, tag = selection.element, selection.element.name.removeprefix(PREFIX)
+    name = unique_name(
+        project, texts, file, "_".join(filter(None, (tag, selection.component or selection.attribute or "value")))
+    )
+    value = text[selection.start : selection.end]
+    is_number = _NUMBER.fullmatch(value.lstrip("+-")) is not None
+    content = f"${{{value}}}" if selection.in_expression and not is_number else value
+    quote = "'" if '"' in content and "'" not in content else '"'
+    definition = f"<xacro:property name={quote}{name}{quote} value={quote}{_quoted(content, quote)}{quote}/>"
+    use = Edit(file, selection.start, selection.end, name if selection.in_expression else f"${{{name}}}")
+    names = occurrences_in(text, file)
+    is_local = any(
+        name.kind is NameKind.PARAMETER and selection.start <= name.start < selection.end and not name.is_definition
+        for name in names
+    )
+    proof = ExpansionProof(project, texts, file)
+    error: UnprovedError | None = None
+    for place in _places(text, element, is_local=is_local):
+        edits = (insertion_before(file, text, place, definition), use)
+        try:
+            proof.check_equal(edits)
+        except UnprovedError as reason:
+            error = error or reason
+        else:
+            return edits
+    raise error or UnprovedError(phrase("there is no place for its definition"))
+
+
+def _quoted(content: str, quote: str) -> str:
+    return content.replace(quote, "&quot;" if quote == '"' else "&apos;")
+
+
+def _places(text: str, element: WrittenElement, *, is_local: bool) -> Iterator[int]:
+    """Yield the offsets at which a definition may be inserted, the best first.
+
+    A comment directly above an element belongs to it, so a definition is inserted above the comment.
+    """
+    places: list[WrittenElement] = []
+    macro, top = element.macro, element.top
+    if top is not None and not (is_local and macro is not None):
+        places.append(top)
+    if macro is not None:
+        places.append(element.child_of(macro))
+    places.append(element)
+    offsets = [offset for place in places for offset in (start_with_comments(text, place.start), place.start)]
+    yield from dict.fromkeys(offsets)
+
+
+def start_with_comments(text: str, start: int) -> int:
+    """Return the start of an element, or that of the comments directly above it.
+
+    Args:
+        text: the text.
+        start: the character offset of the element.
+    """
+    while True:
+        before = text[:start].rstrip(" \t")
+        above = before.rstrip()
+        begin = above.rfind("<!--")
+        is_attached = above.endswith("-->") and begin >= 0 and before[len(above) :].count("\n") == 1
+        if not is_attached or indentation(text, begin) is None:
+            return start
+        start = begin
+
+
+def insertion_before(file: Path, text: str, start: int, new: str) -> Edit:
+    """Return the edit that inserts lines before an offset, with the indentation there."""
+    blanks = indentation(text, start)
+    separator = "" if blanks is None else f"{newline_of(text)}{blanks}"
+    return Edit(file, start, start, new + separator)
+
+
+def unique_name(project: Workspace, texts: Mapping[Path, str], file: Path, wish: str) -> str:
+    """Return a name for expressions that no file of the description uses.
+
+    Args:
+        project: the workspace.
+        texts: the texts of the open files.
+        file: the file.
+        wish: what the name should be.
+    """
+    base = re.sub(r"\W+", "_", wish).strip("_") or "value"
+    if base[0].isdigit():
+        base = f"_{base}"
+    taken = {*keyword.kwlist, *dir(builtins), *MATHEMATICS, *_GROUPS}
+    for other in project.index.related(file, texts):
+        taken.update(re.findall(r"\w+", project.text(other, texts) or ""))
+    name, count = base, 1
+    while name in taken:
+        count += 1
+        name = f"{base}_{count}"
+    return name

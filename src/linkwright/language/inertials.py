@@ -1,0 +1,105 @@
+"""The computed inertia of the link at a place, as edits of the file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from linkwright.diagnostics import LinkwrightError, phrase
+from linkwright.inertia import MeshLibrary, estimate
+from linkwright.inertia.source_edits import EXPRESSION, NotWritableError
+from linkwright.inertia.writing import edits_of_link
+from linkwright.language.grammar import PREFIX
+from linkwright.language.includes import real
+from linkwright.language.proof import Edit, ExpansionProof, UnprovedError
+from linkwright.language.workspace import Workspace
+from linkwright.language.written import WrittenElement, innermost, written_elements
+from linkwright.urdf import Link, Robot, read
+from linkwright.xacro import expand
+from linkwright.xmltree import Element, Overlay
+
+
+def link_with_shapes_at(text: str, offset: int) -> WrittenElement | None:
+    """Return the link around an offset if it has shapes without expressions, or None."""
+    element = innermost(written_elements(text), offset)
+    link = None if element is None else next((one for one in element.around() if one.name == "link"), None)
+    if link is None or any(child.name.startswith(PREFIX) for child in link.children):
+        return None
+    shapes = [child for child in link.children if child.name in ("visual", "collision")]
+    parts = [part for shape in shapes for part in shape.children if part.name in ("origin", "geometry")]
+    return link if parts and not any(EXPRESSION.search(text, part.start, part.end) for part in parts) else None
+
+
+def fill_in_inertia(
+    project: Workspace, texts: Mapping[Path, str], file: Path, text: str, link: WrittenElement
+) -> tuple[Edit, ...]:
+    """Return the edits that give a link the inertia of its shapes; nothing else in the expansions changes.
+
+    The mass is that of the link, or that of water in its shapes, as `linkwright inertia` computes it.
+
+    Args:
+        project: the workspace.
+        texts: the texts of the open files.
+        file: the file.
+        text: its text.
+        link: the link.
+
+    Raises:
+        UnprovedError: no expansion has the link, it cannot be written, or something else would change.
+    """
+    robot, entry, expanded = _expanded_link(project, texts, file, link)
+    finder = project.finder(entry)
+    properties = estimate(expanded, MeshLibrary(finder, entry.parent)).properties
+    if properties is None:
+        raise UnprovedError(phrase("no shape of the link '{name}' has a volume", name=expanded.name))
+    try:
+        source, replacements = edits_of_link(robot, expanded.name, properties)
+    except NotWritableError as error:
+        raise UnprovedError(error.args[0]) from None
+    if source.text != text:
+        raise UnprovedError(phrase("its file has changed since it was read"))
+    edits = tuple(Edit(file, one.start, one.end, one.text) for one in replacements)
+    if not edits:
+        raise UnprovedError(phrase("the link '{name}' has this inertia already", name=expanded.name))
+    for pair in ExpansionProof(project, texts, file).pairs(edits):
+        first, second = (_without_inertial(root, expanded.name) for root in (pair.before, pair.after))
+        if first != second:
+            raise UnprovedError(phrase("the robot of '{file}' would change", file=pair.entry.name))
+    return edits
+
+
+def _expanded_link(
+    project: Workspace, texts: Mapping[Path, str], file: Path, link: WrittenElement
+) -> tuple[Robot, Path, Link]:
+    overlay = Overlay({str(path): text for path, text in texts.items()})
+    for entry in project.index.entries(file, texts):
+        for arguments, _ in project.calls(entry):
+            try:
+                expansion = expand(entry, arguments, packages=project.finder(entry), overlay=overlay)
+            except LinkwrightError:
+                continue
+            robot = read(expansion.document).robot
+            if robot is not None:
+                expanded = next((one for one in robot.links.values() if _is_written_at(one, file, link.start)), None)
+                if expanded is not None:
+                    return robot, entry, expanded
+    raise UnprovedError(phrase("no description that can be expanded has this link"))
+
+
+def _is_written_at(link: Link, file: Path, offset: int) -> bool:
+    source = None if link.element is None else link.element.source
+    return (
+        link.element is not None and source is not None and (real(source.name), link.element.offset) == (file, offset)
+    )
+
+
+def _without_inertial(root: Element, name: str) -> list[tuple[str, tuple[tuple[str, str], ...], str]]:
+    """Return the elements of a robot without the inertia of one link."""
+    elements = []
+    pending = [root]
+    while pending:
+        element = pending.pop()
+        elements.append((element.tag, tuple(element.attributes.items()), element.text().strip()))
+        is_link = element.tag == "link" and element.attributes.get("name") == name
+        pending += [child for child in element.elements() if not (is_link and child.tag == "inertial")]
+    return elements

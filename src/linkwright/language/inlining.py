@@ -1,0 +1,190 @@
+"""Inlining of a property: its value in place of all uses."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from linkwright.diagnostics import display_path, phrase
+from linkwright.language.definitions import NameKind
+from linkwright.language.expressions import WrittenExpression, decoded, expressions_in, inserted
+from linkwright.language.occurrences import Occurrence
+from linkwright.language.proof import Edit, ExpansionProof, UnprovedError
+from linkwright.language.renaming import occurrence_at, references
+from linkwright.language.workspace import Workspace
+from linkwright.language.written import WrittenElement, innermost, written_elements
+from linkwright.loading.deferred import lazy_pattern
+from linkwright.xacro.expressions.scope import literal
+from linkwright.xmltree.patches import whole_lines
+from linkwright.xmltree.tokens import Kind, tokens
+
+_LITERAL = lazy_pattern(r"[^$'\"&<\\]*")
+_PROPERTY = "xacro:property"
+_ATTRIBUTES = frozenset({"name", "value", "scope", "lazy_eval"})
+"""Attributes of a definition that can be inlined; a default depends on other definitions."""
+
+
+class _Piece(NamedTuple):
+    """The attribute value or character data that contains a use.
+
+    Attributes:
+        start: the character offset of the text in the file.
+        text: the text as written.
+        quote: the quote around it; empty for character data.
+    """
+
+    start: int
+    text: str
+    quote: str
+
+
+def property_at(text: str, file: Path, offset: int) -> Occurrence | None:
+    """Return the use or definition of a property at an offset, or None."""
+    name = occurrence_at(text, file, offset)
+    return name if name is not None and name.kind is NameKind.PROPERTY else None
+
+
+def inline_property(project: Workspace, texts: Mapping[Path, str], name: Occurrence) -> tuple[Edit, ...]:
+    """Return the proved edits that replace all uses of a property by its value, and remove its definition.
+
+    Args:
+        project: the workspace.
+        texts: the texts of the open files.
+        name: the property.
+
+    Raises:
+        UnprovedError: it has no definition or several, a use cannot be replaced, or the expansions would differ.
+    """
+    uses = references(project, texts, name)
+    definitions = [use for use in uses if use.is_definition]
+    if len(definitions) != 1:
+        raise UnprovedError(
+            phrase("'{name}' has {count} definitions, and one is needed", name=name.name, count=len(definitions))
+        )
+    definition = definitions[0]
+    source = project.text(definition.file, texts) or ""
+    element = innermost(written_elements(source), definition.start)
+    value = None if element is None else _value(element)
+    if element is None or value is None:
+        raise UnprovedError(phrase("'{name}' is not defined by a value alone", name=name.name))
+    lines = whole_lines(source, element.start, element.end)
+    removal = Edit(definition.file, *lines, "")
+    proof = ExpansionProof(project, texts, definition.file)
+    error: UnprovedError | None = None
+    for is_raw in (True, False):
+        edits = [removal, *_replacements(project, texts, uses, value, is_raw=is_raw)]
+        try:
+            proof.check_equal(edits)
+        except UnprovedError as reason:
+            error = reason
+        else:
+            return tuple(sorted(edits))
+    assert error is not None
+    raise error
+
+
+def _value(element: WrittenElement) -> str | None:
+    """Return the value of a property's definition as written, or None if it has other attributes or content."""
+    attributes = {attribute.name: attribute.value for attribute in element.tag.attributes()}
+    if element.name != _PROPERTY or element.children or element.end < 0 or not {*attributes} <= _ATTRIBUTES:
+        return None
+    return attributes.get("value")
+
+
+def _replacements(
+    project: Workspace, texts: Mapping[Path, str], uses: Sequence[Occurrence], value: str, *, is_raw: bool
+) -> Iterator[Edit]:
+    """Yield the edits of the uses of a property.
+
+    Args:
+        project: the workspace.
+        texts: the texts of the open files.
+        uses: the occurrences of the name.
+        value: the value of the property as written.
+        is_raw: whether the value itself replaces an expression that is the name alone.
+    """
+    for file in dict.fromkeys(use.file for use in uses):
+        text = project.text(file, texts) or ""
+        places = [use for use in uses if use.file == file and not use.is_definition]
+        pieces = [*_pieces(text)] if places else []
+        done: set[tuple[int, int]] = set()
+        for use in places:
+            piece = next((one for one in pieces if one.start <= use.start < one.start + len(one.text)), None)
+            around = None if piece is None else _expression_around(piece, use)
+            if piece is None or around is None or text[: use.start].endswith("."):
+                line = text.count("\n", 0, use.start) + 1
+                message = phrase("its use in {file}:{line} is not an expression", file=display_path(file), line=line)
+                raise UnprovedError(message)
+            span = piece.start + around.start, piece.start + around.end
+            if span not in done:
+                done.add(span)
+                names = [one for one in places if span[0] <= one.start < span[1]]
+                yield Edit(file, *span, _replaced(around, piece, names, value, is_raw=is_raw))
+
+
+def _pieces(text: str) -> Iterator[_Piece]:
+    """Yield the values and character data of a text that contain expressions."""
+    for token in tokens(text):
+        if token.kind is Kind.START:
+            for attribute in token.attributes():
+                if attribute.value and "$" in attribute.value:
+                    yield _Piece(attribute.value_start, attribute.value, attribute.quote)
+        elif token.kind is Kind.TEXT and "$" in token.text:
+            yield _Piece(token.start, token.text, "")
+
+
+def _expression_around(piece: _Piece, use: Occurrence) -> WrittenExpression | None:
+    at = use.start - piece.start
+    return next((one for one in expressions_in(piece.text) if one.start < at < one.end), None)
+
+
+def _replaced(
+    around: WrittenExpression, piece: _Piece, names: Sequence[Occurrence], value: str, *, is_raw: bool
+) -> str:
+    """Return the text that replaces an expression that contains some uses of the property."""
+    quotes = {"'": "&apos;", '"': "&quot;"}
+    source, low = around.source, piece.start + around.inside[0]
+    if source.strip() == names[0].name and (is_raw or _as_expression(value, piece.quote) is None):
+        return value.replace(piece.quote, quotes[piece.quote]) if piece.quote else value
+    new = _as_expression(value, piece.quote)
+    if new is None:
+        raise UnprovedError(phrase("an expression cannot contain its value '{value}'", value=value))
+    if piece.quote:
+        new = new.replace(piece.quote, quotes[piece.quote])
+    for use in sorted(names, key=lambda one: one.start, reverse=True):
+        replaced = inserted(source, use.start - low, use.end - low, new)
+        if replaced is None:
+            raise UnprovedError(phrase("an expression cannot contain its value '{value}'", value=value))
+        source = replaced
+    return f"${{{source}}}"
+
+
+def _as_expression(value: str, quote: str) -> str | None:
+    """Return the value of a property as an expression, or None if only a text can have it.
+
+    Args:
+        value: the value as written.
+        quote: the quote around the text that receives the expression.
+    """
+    parts = [*expressions_in(value)]
+    if len(parts) == 1 and (parts[0].start, parts[0].end) == (0, len(value)):
+        return parts[0].source.strip()
+    if not _LITERAL.fullmatch(value):
+        return None
+    python = literal(decoded(value))
+    if isinstance(python, bool):
+        return str(python)
+    if isinstance(python, (int, float)):
+        return value.strip() if _is_number(value) else repr(python)
+    inner = "'" if quote != "'" else '"'
+    return f"{inner}{value}{inner}"
+
+
+def _is_number(text: str) -> bool:
+    """Return whether a text is a number of Python, as ``007`` is not."""
+    try:
+        return isinstance(ast.literal_eval(text.strip()), (int, float))
+    except (SyntaxError, ValueError):
+        return False

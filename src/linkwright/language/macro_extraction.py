@@ -1,0 +1,169 @@
+"""Extraction of elements to a macro with parameters for the names that they use."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
+from pathlib import Path
+
+from linkwright.diagnostics import phrase
+from linkwright.language.definitions import NameKind
+from linkwright.language.extraction import insertion_before, start_with_comments, unique_name
+from linkwright.language.grammar import PREFIX
+from linkwright.language.occurrences import Occurrence, occurrences_in
+from linkwright.language.proof import Edit, ExpansionProof, UnprovedError
+from linkwright.language.workspace import Workspace
+from linkwright.language.written import WrittenElement, written_elements
+from linkwright.xmltree.patches import indentation, newline_of
+from linkwright.xmltree.tokens import Kind, tokens
+
+_STEP = "  "
+
+
+def selected_elements(text: str, start: int, end: int) -> list[WrittenElement]:
+    """Return the whole sibling elements that a selection covers; empty if it covers anything else, or the root.
+
+    Args:
+        text: the text of a file.
+        start: the character offset of the selection.
+        end: the offset after it.
+    """
+    chosen = text[start:end]
+    start, end = start + len(chosen) - len(chosen.lstrip()), end - len(chosen) + len(chosen.rstrip())
+    if start >= end:
+        return []
+    inside = [one for one in written_elements(text) if start <= one.start < end]
+    if not inside or any(one.end < 0 or one.end > end for one in inside):
+        return []
+    first = inside[0]
+    siblings = [one for one in inside if one.parent is first.parent]
+    if first.parent is None or not all(_is_movable(one) for one in siblings):
+        return []
+    at = start
+    for sibling in siblings:
+        if not _is_blank(text[at : sibling.start]):
+            return []
+        at = sibling.end
+    return siblings if at == end or _is_blank(text[at:end]) else []
+
+
+def _is_blank(text: str) -> bool:
+    """Return whether a text has comments and blanks alone."""
+    return all(
+        token.kind is Kind.COMMENT or (token.kind is Kind.TEXT and not token.text.strip()) for token in tokens(text)
+    )
+
+
+def _is_movable(element: WrittenElement) -> bool:
+    return element.name not in ("xacro:macro", "xacro:arg", "xacro:include", "xacro:property")
+
+
+def extract_macro(
+    project: Workspace, texts: Mapping[Path, str], file: Path, text: str, siblings: Sequence[WrittenElement]
+) -> tuple[Edit, ...]:
+    """Return the proved edits that move elements to a macro with parameters for the names that they use.
+
+    Args:
+        project: the workspace.
+        texts: the texts of the open files.
+        file: the file.
+        text: its text.
+        siblings: the elements, as `selected_elements` returns them.
+
+    Raises:
+        UnprovedError: the expansions would differ.
+    """
+    start, end, top = siblings[0].start, siblings[-1].end, siblings[0].top
+    assert top is not None
+    name = unique_name(project, texts, file, _macro_name(siblings[0]))
+    newline, blanks = newline_of(text), indentation(text, top.start) or ""
+    proof = ExpansionProof(project, texts, file)
+    error: UnprovedError | None = None
+    starts = dict.fromkeys((start, start_with_comments(text, start)))  # a comment above a call is lost, so it may move
+    places = dict.fromkeys((start_with_comments(text, top.start), top.start))
+    lists = _parameter_lists(project, texts, file, text, (start, end))
+    for parameters, begin, place in product(lists, starts, places):
+        if begin < place:
+            continue
+        call = "".join(f' {parameter}="${{{parameter}}}"' for parameter in parameters)
+        body = _indented(text, begin, end, blanks + _STEP)
+        params = f' params="{" ".join(parameters)}"'
+        lines = (f'<xacro:macro name="{name}"{params}>', f"{blanks}{_STEP}{body}", f"{blanks}</xacro:macro>")
+        definition = insertion_before(file, text, place, newline.join(lines))
+        edits = _joined(definition, Edit(file, begin, end, f"<xacro:{name}{call}/>"))
+        try:
+            proof.check_equal(edits)
+        except UnprovedError as reason:
+            error = error or reason
+        else:
+            return edits
+    raise error or UnprovedError(phrase("there is no place for its definition"))
+
+
+def _joined(first: Edit, second: Edit) -> tuple[Edit, ...]:
+    """Return two edits as one if the second begins where the first inserts."""
+    if first.end == second.start:
+        return (Edit(first.file, first.start, second.end, first.text + second.text),)
+    return first, second
+
+
+def _macro_name(element: WrittenElement) -> str:
+    """Return a name from the literal part of the element's name, or of the names around it, and its tag."""
+    tag = element.name.removeprefix(PREFIX)
+    for one in element.around():
+        literal = re.sub(r"\$\{[^}]*\}|\$\([^)]*\)", "", one.value("name")).strip("_- ")
+        if literal and one.parent is not None:
+            return literal if literal.endswith(tag) else f"{literal}_{tag}"
+    return f"{tag}_macro"
+
+
+def _parameter_lists(
+    project: Workspace, texts: Mapping[Path, str], file: Path, text: str, selected: tuple[int, int]
+) -> Iterator[list[str]]:
+    """Yield lists of parameters to try: all names that the elements use, those of the macro around them, none."""
+    properties: set[str] = set()
+    for other in project.index.related(file, texts):
+        all_names = occurrences_in(project.text(other, texts) or "", other)
+        properties |= {one.name for one in all_names if one.kind is NameKind.PROPERTY and one.is_definition}
+    inside = [one for one in occurrences_in(text, file) if selected[0] <= one.start < selected[1]]
+    own = {one.name for one in inside if one.kind is NameKind.PROPERTY and one.is_definition}
+    blocks = {one.name for one in inside if _is_block_use(text, one)}
+    names = [one for one in inside if one.name not in own | blocks and not one.is_definition]
+    used = [
+        one.name
+        for one in names
+        if (one.kind is NameKind.PARAMETER and _is_value(text, one))
+        or (one.kind is NameKind.PROPERTY and one.name in properties)
+    ]
+    local = [one.name for one in names if one.kind is NameKind.PARAMETER and _is_value(text, one)]
+    lists = [[*dict.fromkeys(used)], [*dict.fromkeys(local)], []]
+    for index, parameters in enumerate(lists):
+        if parameters not in lists[:index]:
+            yield parameters
+
+
+def _is_block_use(text: str, name: Occurrence) -> bool:
+    before = text[: name.start].rpartition("<")[2]
+    return before.startswith("xacro:insert_block")
+
+
+def _is_value(text: str, name: Occurrence) -> bool:
+    """Return whether a parameter is used in an expression, and not given in a call."""
+    return re.match(r"\s*=\s*[\"']", text[name.end :]) is None
+
+
+def _indented(text: str, start: int, end: int, blanks: str) -> str:
+    """Return a range of a text with another indentation of the lines that begin outside of values and comments."""
+    old = indentation(text, start)
+    body = text[start:end]
+    if old is None or old == blanks:
+        return body
+    parts = []
+    for token in tokens(body):
+        moved = token.text
+        if token.kind is Kind.TEXT and not moved.strip() and "\n" in moved:
+            before, newline, last = moved.rpartition("\n")
+            moved = before + newline + (blanks + last.removeprefix(old) if last.startswith(old) else last)
+        parts.append(moved)
+    return "".join(parts)

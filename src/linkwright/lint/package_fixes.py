@@ -1,0 +1,221 @@
+"""Fixes of build files and manifests: missing dependencies, and missing install rules.
+
+The new lines have the form of the lines beside them. A file in which the location of a new line is not certain has no
+fix.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterable, Iterator
+from pathlib import PurePosixPath
+
+from linkwright.lint.fix import Edit, Fix
+from linkwright.loading.deferred import lazy_pattern
+from linkwright.loading.lean_typing import TYPE_CHECKING
+from linkwright.xmltree.patches import element_range, newline_of
+
+if TYPE_CHECKING:
+    from linkwright.diagnostics import SourceText
+    from linkwright.lint.package import PackageContext
+    from linkwright.packages.readers.cmake_syntax import Statement, Token
+    from linkwright.packages.readers.package_xml import Manifest
+    from linkwright.packages.readers.setup_py import SetupFile
+
+_SHARE = "share/${PROJECT_NAME}"
+_REST = lazy_pattern(r"[ \t]*(,?)[ \t]*(#[^\n]*)?")
+_LAST_COMMAND = lazy_pattern(r"^[ \t]*ament_(auto_)?package[ \t]*\(", re.MULTILINE | re.IGNORECASE)
+_JOINED = lazy_pattern(r"\(\s*os\.path\.join\(\s*['\"]share['\"],\s*package_name\b")
+_FIRST_IMPORT = lazy_pattern(r"^(import|from)[ \t]", re.MULTILINE)
+
+
+def dependency_fix(manifest: Manifest, names: list[str]) -> Fix | None:
+    """Return the fix that adds dependencies to ``package.xml``, or None if this is not possible.
+
+    The new lines follow the last dependency that is not only for tests, or else the licence, and have its indentation.
+    """
+    source = manifest.document.source
+    dependencies = manifest.dependencies
+    run_time = [dependency for dependency in dependencies if dependency.tag not in ("test_depend", "doc_depend")]
+    last = (run_time or dependencies)[-1].element if dependencies else manifest.root.first("license")
+    place = None if last is None else element_range(last)
+    if source is None or last is None or place is None:
+        return None
+    line = source.text.rfind("\n", 0, last.offset) + 1
+    indent = source.text[line : last.offset]
+    if indent.strip():
+        return None
+    newline = newline_of(source.text)
+    text = "".join(f"{newline}{indent}<exec_depend>{name}</exec_depend>" for name in names)
+    return Fix((Edit(source.name, place[1], place[1], text),))
+
+
+def setup_folders_fix(package: PackageContext, setup: SetupFile, folders: Iterable[str], *, safe: bool) -> Fix | None:
+    """Return the fix that installs the files of folders by the ``data_files`` of ``setup.py``, or None."""
+    glob, imports = _glob(setup)
+    if glob is None:
+        return None
+    entries = [
+        f"({_share_folder(setup, package.name, folder)}, {_patterns(package, folder, glob)})" for folder in folders
+    ]
+    return _data_files_fix(setup, entries, imports, safe=safe)
+
+
+def setup_file_fix(package: PackageContext, setup: SetupFile, destination: str, file: str) -> Fix | None:
+    """Return the fix that installs a file by the ``data_files`` of ``setup.py``, or None.
+
+    Args:
+        package: the package.
+        setup: its ``setup.py``.
+        destination: the folder relative to the prefix; an empty text for the share folder of the package.
+        file: the path of the file in the package.
+    """
+    into = f"'{destination}'" if destination else _share_folder(setup, package.name)
+    return _data_files_fix(setup, [f"({into}, ['{file}'])"], (), safe=True)
+
+
+def cmake_folder_fix(source: SourceText, folder: str, *, safe: bool) -> Fix | None:
+    """Return the fix that installs a folder by ``CMakeLists.txt``, or None.
+
+    A folder in the package is added to a command that installs folders into the share folder; otherwise, a command is
+    added before ``ament_package()``.
+
+    Args:
+        source: the ``CMakeLists.txt``.
+        folder: the path of the folder in the package.
+        safe: whether the fix is safe.
+    """
+    text, parent = source.text, str(PurePosixPath(folder).parent)
+    last = None if parent != "." else next(_last_folders(source), None)
+    if last is not None:
+        end = last.end + (1 if last.is_quoted else 0)
+        line = text.rfind("\n", 0, last.start) + 1
+        blanks = text[line : last.start].removesuffix('"')
+        separator = f"{newline_of(text)}{blanks}" if not blanks.strip() else " "
+        return Fix((Edit(source.name, end, end, f"{separator}{folder}"),), safe)
+    last_command = _LAST_COMMAND.search(text)
+    if last_command is None:
+        return None
+    destination = _SHARE if parent == "." else f"{_SHARE}/{parent}"
+    newline = newline_of(text)
+    command = f"install(DIRECTORY {folder} DESTINATION {destination}){newline}{newline}"
+    return Fix((Edit(source.name, last_command.start(), last_command.start(), command),), safe)
+
+
+def _last_folders(source: SourceText) -> Iterator[Token]:
+    """Yield the last folder of each command that installs whole folders into the share folder, under no condition."""
+    from linkwright.packages.readers.cmake_syntax import ENDS, statements
+
+    depth = 0
+    for statement in statements(source):
+        depth += statement.name in ENDS
+        depth -= statement.name in ENDS.values()
+        if depth == 0 and statement.name == "install":
+            folders = _installed_folders(statement)
+            if folders:
+                yield folders[-1]
+
+
+def _installed_folders(statement: Statement) -> tuple[Token, ...]:
+    words = [token.text for token in statement.tokens]
+    if words[:1] != ["DIRECTORY"] or len(words) < 4 or words[-2] != "DESTINATION" or words[-1].rstrip("/") != _SHARE:
+        return ()
+    folders = statement.tokens[1:-2]
+    return () if any(folder.text.endswith("/") or "$" in folder.text for folder in folders) else folders
+
+
+def _data_files_fix(setup: SetupFile, entries: list[str], imports: tuple[Edit, ...], *, safe: bool) -> Fix | None:
+    """Return the fix that adds entries to the list ``data_files``, or None if it is not written as a list."""
+    listed = _data_files_list(setup)
+    if listed is None:
+        return None
+    source, text = setup.source, setup.source.text
+    start, elements = listed
+    if '"' in text and text.count('"') > text.count("'"):
+        entries = [entry.replace("'", '"') for entry in entries]
+    if elements:
+        edit = _after_last(source, elements[-1], entries)
+    else:
+        edit = Edit(source.name, start + 1, start + 1, ", ".join(entries))
+    if any(one.start > edit.start for one in imports):  # the import would come after its use
+        return None
+    edits = (*imports, edit)
+    changed = text
+    for one in sorted(edits, key=lambda one: one.start, reverse=True):
+        changed = changed[: one.start] + one.replacement + changed[one.end :]
+    try:
+        ast.parse(changed)
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return None
+    return Fix(edits, safe)
+
+
+def _after_last(source: SourceText, last: tuple[int, int], entries: list[str]) -> Edit:
+    """Return the edit that inserts entries after the last one, on lines of their own if this one has its own line."""
+    text, (start, end) = source.text, last
+    indent = text[text.rfind("\n", 0, start) + 1 : start]
+    if indent.strip():
+        return Edit(source.name, end, end, "".join(f", {entry}" for entry in entries))
+    separator = f"{newline_of(text)}{indent}"
+    rest = _REST.match(text, end)
+    if rest is not None and rest[1] and rest[2]:  # a comment belongs to the entry before it
+        at = end + len(rest[0].rstrip("\r"))
+        return Edit(source.name, at, at, "".join(f"{separator}{entry}," for entry in entries))
+    return Edit(source.name, end, end, "".join(f",{separator}{entry}" for entry in entries))
+
+
+def _data_files_list(setup: SetupFile) -> tuple[int, list[tuple[int, int]]] | None:
+    """Return the offset of the list ``data_files`` of the call of ``setup``, and the ranges of its elements."""
+    from linkwright.packages.readers.python_values import PythonFile, argument_of
+
+    try:
+        python = PythonFile(setup.source)
+    except (SyntaxError, ValueError):
+        return None
+    call = next(python.calls("setup"), None)
+    node = None if call is None else argument_of(call, "data_files")
+    node = None if node is None else python.resolved(node)
+    if not isinstance(node, ast.List):
+        return None
+    spans = [python.span(element) for element in (node, *node.elts)]
+    offset = setup.source.offset
+    ranges = [(offset(span.line, span.column), offset(span.end_line, span.end_column)) for span in spans]
+    return ranges[0][0], ranges[1:]
+
+
+def _glob(setup: SetupFile) -> tuple[str | None, tuple[Edit, ...]]:
+    """Return how ``setup.py`` calls ``glob``, and the edit that imports it if it does not; None if it cannot."""
+    for node in () if setup.tree is None else setup.tree.body:
+        if isinstance(node, ast.ImportFrom) and node.module == "glob":
+            name = next((alias.asname or alias.name for alias in node.names if alias.name == "glob"), None)
+            if name is not None:
+                return name, ()
+        if isinstance(node, ast.Import):
+            name = next((alias.asname or alias.name for alias in node.names if alias.name == "glob"), None)
+            if name is not None:
+                return f"{name}.glob", ()
+    text = setup.source.text
+    first = _FIRST_IMPORT.search(text)
+    if first is None or text.startswith("from __future__", first.start()):
+        return None, ()
+    return "glob", (Edit(setup.source.name, first.start(), first.start(), f"from glob import glob{newline_of(text)}"),)
+
+
+def _share_folder(setup: SetupFile, name: str, folder: str = "") -> str:
+    """Return the expression of a folder in the share folder, in the form of the other entries."""
+    text, below = setup.source.text, f"/{folder}" if folder else ""
+    if _JOINED.search(text):
+        return "os.path.join('share', package_name" + (f", '{folder}')" if folder else ")")
+    if re.search(rf"^package_name\s*=\s*['\"]{re.escape(name)}['\"]", text, re.MULTILINE):
+        return "'share/' + package_name" + (f" + '{below}'" if below else "")
+    return f"'share/{name}{below}'"
+
+
+def _patterns(package: PackageContext, folder: str, glob: str) -> str:
+    """Return the patterns of the files in a folder; ``glob`` would also return the folders in it, which is an error."""
+    if not any(other.startswith(f"{folder}/") for other in package.folders):
+        return f"{glob}('{folder}/*')"
+    files = [file for file in package.files if file.rpartition("/")[0] == folder]
+    endings = sorted({PurePosixPath(file).suffix for file in files})
+    return " + ".join(f"{glob}('{folder}/*{ending}')" for ending in endings if ending)

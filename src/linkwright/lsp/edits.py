@@ -1,0 +1,43 @@
+"""Edits of files as those of the protocol, with the versions of the open texts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import groupby
+
+from lsprotocol import types
+
+from linkwright.language.proof import Edit
+from linkwright.lsp.server import LinkwrightServer
+
+
+def document_edits(server: LinkwrightServer, edits: Iterable[Edit]) -> types.WorkspaceEdit:
+    """Return edits for the editor, with the versions of the open files: it applies all or none."""
+    changes: list[types.TextDocumentEdit | types.CreateFile | types.RenameFile | types.DeleteFile] = []
+    for file, own in groupby(sorted(edits), key=lambda edit: edit.file):
+        positions = server.positions(file)
+        if positions is not None:
+            uri = server.uri_of(file)
+            document = server.workspace.text_documents.get(uri)
+            version = None if document is None else document.version
+            changes.append(
+                types.TextDocumentEdit(
+                    types.OptionalVersionedTextDocumentIdentifier(uri, version),
+                    [types.TextEdit(positions.range(edit.start, edit.end), edit.text) for edit in own],
+                )
+            )
+    return types.WorkspaceEdit(document_changes=changes)
+
+
+def new_file_edit(uri: str, text: str) -> types.WorkspaceEdit:
+    """Return the edit that makes a file with a text.
+
+    Args:
+        uri: the URI of the file, which does not exist.
+        text: the text.
+    """
+    start = types.Range(types.Position(0, 0), types.Position(0, 0))
+    written = types.TextDocumentEdit(
+        types.OptionalVersionedTextDocumentIdentifier(uri, None), [types.TextEdit(start, text)]
+    )
+    return types.WorkspaceEdit(document_changes=[types.CreateFile(uri), written])

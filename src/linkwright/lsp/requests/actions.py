@@ -1,0 +1,171 @@
+"""Code actions: quick fixes at once, and refactorings whose edits are proved when the user chooses one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from zlib import crc32
+
+from lsprotocol import types
+from pygls.exceptions import JsonRpcException
+
+from linkwright.diagnostics import LinkwrightError, phrase
+from linkwright.diagnostics.translation import localized
+from linkwright.language.includes import real
+from linkwright.language.refactoring import Action, Offer, Refactoring, offers_at, refactor
+from linkwright.lsp.edits import document_edits, new_file_edit
+from linkwright.lsp.positions import TextPositions
+from linkwright.lsp.requests.fixes import fixes, suppressions
+from linkwright.lsp.server import LinkwrightServer, path_of
+
+_KINDS = (
+    types.CodeActionKind.QuickFix,
+    types.CodeActionKind.SourceFixAll,
+    types.CodeActionKind.RefactorExtract,
+    types.CodeActionKind.RefactorInline,
+    types.CodeActionKind.RefactorRewrite,
+)
+
+
+def _name(kind: types.CodeActionKind | str) -> str:
+    return kind.value if isinstance(kind, types.CodeActionKind) else kind
+
+
+def is_requested(kind: str, only: Sequence[types.CodeActionKind | str] | None) -> bool:
+    """Return whether a kind of action is one that the editor asks for, or below one.
+
+    Args:
+        kind: the kind, such as ``refactor.extract``.
+        only: the kinds that the editor asks for; None for all.
+    """
+    return only is None or any(f"{kind}.".startswith(f"{outer}." if outer else "") for outer in map(_name, only))
+
+
+def _may_be_requested(kinds: Iterable[types.CodeActionKind], only: Sequence[types.CodeActionKind | str] | None) -> bool:
+    """Return whether the editor asks for one of some kinds, or for one below it."""
+    names = [_name(outer) for outer in only or ()]
+    return any(
+        is_requested(kind.value, only) or any(name.startswith(f"{kind.value}.") for name in names) for kind in kinds
+    )
+
+
+def _resolves_edits(server: LinkwrightServer) -> bool:
+    capabilities = server.client_capabilities.text_document
+    actions = None if capabilities is None else capabilities.code_action
+    resolve = None if actions is None else actions.resolve_support
+    return resolve is not None and "edit" in resolve.properties and bool(actions and actions.data_support)
+
+
+def _makes_files(server: LinkwrightServer) -> bool:
+    capabilities = server.client_capabilities.workspace
+    edits = None if capabilities is None else capabilities.workspace_edit
+    return edits is not None and types.ResourceOperationKind.Create in (edits.resource_operations or ())
+
+
+def _workspace_edit(server: LinkwrightServer, refactoring: Refactoring) -> types.WorkspaceEdit:
+    if refactoring.new_file is not None:
+        return new_file_edit(server.uri_of(refactoring.new_file.file), refactoring.new_file.text)
+    return document_edits(server, refactoring.edits)
+
+
+async def _refactoring_edit(
+    server: LinkwrightServer, action: Action, path: Path, start: int, end: int, texts: Mapping[Path, str]
+) -> types.WorkspaceEdit:
+    """Return the proved edit of a refactoring.
+
+    Raises:
+        LinkwrightError: LANG105, the edits cannot be proved.
+        JsonRpcException: ContentModified, a text has changed meanwhile.
+    """
+    project = server.project
+    assert project is not None
+    await server.when_indexed()
+    result = await server.in_thread(lambda: refactor(project, texts, action, real(path), start, end))
+    if server.texts() != texts:
+        raise _modified()
+    return _workspace_edit(server, result)
+
+
+def _modified() -> JsonRpcException:
+    message = localized(phrase("a text has changed meanwhile"))
+    return JsonRpcException(message, code=int(types.LSPErrorCodes.ContentModified))
+
+
+async def _refactorings(
+    server: LinkwrightServer, offers: Iterable[Offer], path: Path, positions: TextPositions, selection: tuple[int, int]
+) -> list[types.CodeAction]:
+    """Return the actions of refactorings, each with its edit unless the editor resolves edits itself."""
+    actions = []
+    for offer in offers:
+        title, kind = localized(offer.title), offer.action.value
+        if _resolves_edits(server):
+            data = {
+                "action": offer.action.value,
+                "uri": server.uri_of(path),
+                "start": selection[0],
+                "end": selection[1],
+                "checksum": crc32(positions.text.encode()),
+            }
+            actions.append(types.CodeAction(title, kind, data=data))
+            continue
+        try:
+            edit = await _refactoring_edit(server, offer.action, path, *selection, server.texts())
+        except LinkwrightError:  # what is not proved is not offered
+            continue
+        actions.append(types.CodeAction(title, kind, edit=edit))
+    return actions
+
+
+async def _resolved(server: LinkwrightServer, action: types.CodeAction) -> types.CodeAction:
+    """Return an action with its proved edit."""
+    data = action.data if isinstance(action.data, dict) else {}
+    path, texts = path_of(str(data.get("uri", ""))), server.texts()
+    positions = None if path is None else server.positions(path)
+    start, end = data.get("start"), data.get("end")
+    if path is None or positions is None or not isinstance(start, int) or not isinstance(end, int):
+        return action
+    if data.get("checksum") != crc32(positions.text.encode()):
+        raise _modified()
+    try:
+        kind = Action(data.get("action"))
+    except ValueError:
+        return action
+    try:
+        action.edit = await _refactoring_edit(server, kind, path, start, end, texts)
+    except LinkwrightError as error:
+        message = "\n".join(localized(diagnostic.message) for diagnostic in error.diagnostics)
+        raise JsonRpcException(message, code=int(types.LSPErrorCodes.RequestFailed)) from None
+    return action
+
+
+def add_requests(server: LinkwrightServer) -> None:
+    """Add the requests of this module to a server."""
+
+    @server.feature(types.TEXT_DOCUMENT_CODE_ACTION, types.CodeActionOptions([*_KINDS], resolve_provider=True))
+    async def code_action(server: LinkwrightServer, asked: types.CodeActionParams) -> list[types.CodeAction] | None:
+        path = path_of(asked.text_document.uri)
+        positions = None if path is None else server.positions(path)
+        project, only = server.project, asked.context.only
+        if path is None or positions is None or project is None:
+            return None
+        texts = server.texts()
+        actions: list[types.CodeAction] = []
+        if _may_be_requested(_KINDS[:2], only):
+            actions += fixes(server, project.fixable(real(path), texts), asked, positions)
+            actions += suppressions(server, project.findings(real(path), texts), asked, path, positions)
+        if _may_be_requested(_KINDS[2:], only):
+            start, end = positions.offset(asked.range.start), positions.offset(asked.range.end)
+            names = await server.names(path)
+            server.check_unchanged(path, positions)
+            offers = [
+                offer
+                for offer in offers_at(positions.text, path, start, end, names)
+                if is_requested(offer.action.value, only)
+                and (offer.action is not Action.CONVERT_TO_XACRO or _makes_files(server))
+            ]
+            actions += await _refactorings(server, offers, path, positions, (start, end))
+        return [action for action in actions if is_requested(_name(action.kind or ""), only)]
+
+    @server.feature(types.CODE_ACTION_RESOLVE)
+    async def code_action_resolve(server: LinkwrightServer, action: types.CodeAction) -> types.CodeAction:
+        return await _resolved(server, action)

@@ -1,0 +1,23 @@
+"""The content of virtual documents: expansions of descriptions, and pages of rules."""
+
+from __future__ import annotations
+
+from lsprotocol import types
+
+from linkwright.lsp import rule_pages
+from linkwright.lsp.requests import expansions
+from linkwright.lsp.server import LinkwrightServer
+
+
+def add_requests(server: LinkwrightServer) -> None:
+    """Add the requests of this module to a server."""
+    schemes = types.TextDocumentContentOptions([expansions.SCHEME, rule_pages.SCHEME])
+
+    @server.feature(types.WORKSPACE_TEXT_DOCUMENT_CONTENT, schemes)
+    async def text_document_content(
+        server: LinkwrightServer, asked: types.TextDocumentContentParams
+    ) -> types.TextDocumentContentResult | None:
+        text = rule_pages.page_text(asked.uri)
+        if text is None:
+            text = await expansions.content(server, asked.uri)
+        return None if text is None else types.TextDocumentContentResult(text)

@@ -1,0 +1,58 @@
+"""Expressions as written: an inserted expression keeps its value, and a part can be taken out."""
+
+from __future__ import annotations
+
+import ast
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from linkwright.language.expressions import decoded, expressions_in, inserted, is_part, parsed
+
+NUMBERS = st.sampled_from(["1", "2.5", "-3", "0.1"])
+SIGNS = st.sampled_from([" + ", " - ", "*", " / ", " ** ", " &lt; ", " and ", " or ", " == "])
+
+
+def combined(inner: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
+    return st.one_of(
+        st.tuples(inner, SIGNS, inner).map("".join),
+        inner.map(lambda text: f"({text})"),
+        inner.map(lambda text: f"-{text}"),
+        inner.map(lambda text: f"abs({text})"),
+        st.tuples(inner, inner, inner).map(lambda texts: f"{texts[0]} if {texts[1]} else {texts[2]}"),
+    )
+
+
+VALUES = st.recursive(NUMBERS, combined, max_leaves=4)
+USES = st.recursive(st.one_of(NUMBERS, st.just("name")), combined, max_leaves=4).filter(lambda text: "name" in text)
+
+
+def tree(text: str) -> str:
+    return ast.dump(ast.parse(decoded(text), mode="eval").body)
+
+
+@given(USES, VALUES)
+def test_an_inserted_expression_is_one_operand(use, value):
+    start = use.index("name")
+    new = inserted(use, start, start + len("name"), value)
+    assert new is not None
+    assert tree(new) == tree(f"{use[:start]}({value}){use[start + len('name') :]}")
+
+
+@given(USES, VALUES)
+def test_what_was_inserted_is_a_part(use, value):
+    start = use.index("name")
+    new = inserted(use, start, start + len("name"), value)
+    assert new is not None
+    begin = start + (new[start:] != value + use[start + len("name") :])
+    assert is_part(new, begin, begin + len(value))
+
+
+@given(st.text("${}()ab+'1 ", max_size=20))
+def test_no_text_is_too_much(text):
+    for expression in expressions_in(text):
+        assert text[expression.start : expression.start + 2] == "${"
+        assert text[slice(*expression.inside)] == expression.source
+    parsed(text)
+    is_part(text, 1, 3)
+    inserted(text, 1, 3, "a + b")

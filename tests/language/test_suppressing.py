@@ -1,0 +1,49 @@
+"""Comments that suppress a finding: where they are inserted, and that each suppresses it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from linkwright.language.proof import edited
+from linkwright.language.suppressing import code_at, suppression
+
+XML, TEXT = "<!-- linkwright: ignore LW104 (reason) -->", "# linkwright: ignore LW104 (reason)"
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "place", "expected"),
+    [
+        ("r.urdf", '<robot name="r">\n\t<lnik/>\n</robot>', "<lnik", f'<robot name="r">\n\t{XML}\n\t<lnik/>\n</robot>'),
+        ("r.urdf", "<robot>\r\n  <a/>\r\n</robot>", "<a", f"<robot>\r\n  {XML}\r\n  <a/>\r\n</robot>"),
+        ("r.urdf", '<robot>\n  <a\n    x="1"/>\n</robot>', "1", f'<robot>\n  {XML}\n  <a\n    x="1"/>\n</robot>'),
+        ("r.urdf", "<robot>\n  <a/><b/>\n</robot>", "<b", f"<robot>\n  <a/><b/> {XML}\n</robot>"),
+        ("r.urdf", "<robot>\n  <a/><b\n  x='1'/>\n</robot>", "<b", f"<robot>\n  <a/>{XML} <b\n  x='1'/>\n</robot>"),
+        ("r.urdf", "<robot>\n  <a/>\n</robot>", "<robot", f"<robot> {XML}\n  <a/>\n</robot>"),
+        ("r.urdf", "<robot\n  name='r'>\n</robot>", "<robot", f"{XML}\n<robot\n  name='r'>\n</robot>"),
+        (
+            "a.launch.py",
+            "def f():\n    return g(\n        1)\n",
+            "1",
+            f"def f():\n    return g(\n        {TEXT}\n        1)\n",
+        ),
+        ("a.launch.py", 'a = """\nb"""\n', "b", f'a = """\nb"""  {TEXT}\n'),
+        ("a.launch.py", 'a = """\nb\n"""\n', "b", None),
+        ("a.yaml", "a: |\n  b\n  c\n", "b", None),
+        ("a.yaml", "a:\n  b: 1\n", "b", f"a:\n  {TEXT}\n  b: 1\n"),
+        ("CMakeLists.txt", "install(\n  FILES a)\n", "a)", f"install(\n  {TEXT}\n  FILES a)\n"),
+        ("a.world", "<sdf><world/></sdf>", "<world", None),
+        ("a.urdf", "no xml", "no", None),
+    ],
+)
+def test_a_comment_suppresses_the_finding_and_changes_nothing_else(name, text, place, expected):
+    edit = suppression(text, Path(name), "LW104", text.rindex(place))
+    assert (None if edit is None else edited(text, [edit])) == expected
+
+
+def test_the_code_in_a_comment_is_known_at_its_place():
+    text = "<r>\n  <!-- linkwright: ignore LW104 LW105 (b) -->\n  <a/>\n</r>"
+    assert code_at(text, text.index("LW105") + 5) == ("LW105", text.index("LW105"))
+    assert code_at(text, text.index("ignore")) is None
+    assert code_at(text, text.index("<a")) is None

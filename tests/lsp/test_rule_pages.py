@@ -1,0 +1,48 @@
+"""The page behind the code of a finding, and the hover over a code in a suppression comment."""
+
+from __future__ import annotations
+
+import pytest
+from lsprotocol import types
+
+from tests.lsp.conftest import MAIN, connected
+
+FILE = "urdf/arm.urdf.xacro"
+LINKING = types.ClientCapabilities(
+    workspace=types.WorkspaceClientCapabilities(text_document_content=types.TextDocumentContentClientCapabilities()),
+    text_document=types.TextDocumentClientCapabilities(
+        publish_diagnostics=types.PublishDiagnosticsClientCapabilities(code_description_support=True)
+    ),
+)
+BROKEN = MAIN.replace('  <link name="base"/>', '  <link name="base"/>\n  <xacro:nothing/>')
+
+
+async def test_the_code_of_a_finding_leads_to_its_page(package):
+    async with connected(package, LINKING) as editor:
+        editor.open(FILE, BROKEN)
+        (found,) = await editor.until(FILE, "XAC401")
+        asked = types.TextDocumentContentParams(found.code_description.href)
+        page = await editor.client.workspace_text_document_content_async(asked)
+        assert page.text.startswith("# XAC401: ")
+
+
+async def test_an_editor_without_virtual_documents_gets_no_address(editor):
+    editor.open(FILE, BROKEN)
+    (found,) = await editor.until(FILE, "XAC401")
+    assert found.code_description is None
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        (FILE, MAIN.replace("  <link", "  <!-- linkwright: ignore LW104 (as built) -->\n  <link", 1)),
+        ("CMakeLists.txt", "project(arm)\n# linkwright: ignore LW104\nament_package()\n"),
+    ],
+)
+async def test_a_hover_over_a_suppressed_code_has_the_reason_of_the_rule(editor, name, text):
+    editor.open(name, text)
+    offset = text.index("LW104") + 2
+    place = types.Position(text.count("\n", 0, offset), offset - text.rfind("\n", 0, offset) - 1)
+    hover = await editor.client.text_document_hover_async(types.HoverParams(editor.document(name), place))
+    assert hover.contents.value.startswith("# LW104: ")
+    assert "## Why" in hover.contents.value
