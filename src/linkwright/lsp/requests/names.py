@@ -8,10 +8,12 @@ from pathlib import Path
 
 from lsprotocol import types
 
+from linkwright.diagnostics import Phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.language.completion import Completion, ItemKind, complete
 from linkwright.language.definitions import NameDefinition
 from linkwright.language.facts import facts_at
+from linkwright.language.format import Target
 from linkwright.language.hover import definitions_at, explain_at
 from linkwright.language.includes import real
 from linkwright.language.links import file_references
@@ -19,7 +21,7 @@ from linkwright.language.values import ValuedText, described_values, value_at
 from linkwright.language.workspace import Workspace
 from linkwright.lsp.positions import TextOf, TextPositions
 from linkwright.lsp.requests.expansions import source_of
-from linkwright.lsp.server import LinkwrightServer
+from linkwright.lsp.server import FormattedText, LinkwrightServer
 
 _KINDS = {
     ItemKind.ELEMENT: types.CompletionItemKind.Class,
@@ -54,8 +56,15 @@ def completions(
         place: the place.
         takes_snippets: whether the editor understands snippets.
     """
+    found = complete(positions.text, positions.offset(place), path, names, partial(project.finder, path))
+    return items(found, positions, place, takes_snippets=takes_snippets)
+
+
+def items(
+    found: Iterable[Completion], positions: TextPositions, place: types.Position, *, takes_snippets: bool
+) -> list[types.CompletionItem]:
+    """Return completions at a place as the protocol has them, in the same order."""
     offset = positions.offset(place)
-    found = complete(positions.text, offset, path, names, partial(project.finder, path))
     return [_item(item, positions, offset, takes_snippets=takes_snippets) for item in found]
 
 
@@ -125,7 +134,28 @@ def _locations(
             yield types.Location(uri(name.file), own.range(name.start, name.start + len(name.name)))
 
 
-def _markdown(text: str) -> types.MarkupContent:
+def explained(own: FormattedText, place: types.Position) -> types.Hover | None:
+    """Return what a format knows about a place, or None if there is nothing to say."""
+    found = own.format.explain(own.document, own.positions.offset(place))
+    return None if found is None else types.Hover(_markdown(found.text), own.positions.range(found.start, found.end))
+
+
+def targets_at(own: FormattedText, place: types.Position) -> list[Target]:
+    """Return where a format finds the definition of the name at a place."""
+    return [*own.format.define(own.document, own.positions.offset(place))]
+
+
+def _target_locations(
+    targets: Iterable[Target], text_of: TextOf, uri: Callable[[Path], str]
+) -> Iterable[types.Location]:
+    for target in targets:
+        text = text_of(target.file)
+        start = types.Position(0, 0)
+        place = types.Range(start, start) if text is None else text.range(target.start, target.end)
+        yield types.Location(uri(target.file), place)
+
+
+def _markdown(text: str | Phrase) -> types.MarkupContent:
     return types.MarkupContent(types.MarkupKind.Markdown, localized(text))
 
 
@@ -136,17 +166,24 @@ def add_requests(server: LinkwrightServer) -> None:
     async def completion_request(
         server: LinkwrightServer, asked: types.CompletionParams
     ) -> list[types.CompletionItem] | None:
-        path, positions = server.text(asked.text_document)
-        if positions is None or server.project is None:
-            return None
         capabilities = server.client_capabilities.text_document
         item = capabilities.completion.completion_item if capabilities and capabilities.completion else None
         takes_snippets = bool(item and item.snippet_support)
+        own = server.document(asked.text_document)
+        if own is not None:
+            found = own.format.complete(own.document, own.positions.offset(asked.position))
+            return items(found, own.positions, asked.position, takes_snippets=takes_snippets)
+        path, positions = server.text(asked.text_document)
+        if positions is None or server.project is None:
+            return None
         known = await server.names(path)
         return completions(server.project, path, known, positions, asked.position, takes_snippets=takes_snippets)
 
     @server.feature(types.TEXT_DOCUMENT_HOVER)
     async def hover_request(server: LinkwrightServer, asked: types.HoverParams) -> types.Hover | None:
+        own = server.document(asked.text_document)
+        if own is not None:
+            return await server.in_thread(lambda: explained(own, asked.position))
         path, positions = server.text(asked.text_document)
         project, texts = server.project, server.texts()
         if positions is None or project is None:
@@ -161,6 +198,10 @@ def add_requests(server: LinkwrightServer) -> None:
     async def definition_request(
         server: LinkwrightServer, asked: types.DefinitionParams
     ) -> list[types.Location] | None:
+        own = server.document(asked.text_document)
+        if own is not None:
+            targets = await server.in_thread(lambda: targets_at(own, asked.position))
+            return [*_target_locations(targets, server.positions, server.uri_of)]
         source = await server.in_thread(lambda: source_of(server, asked.text_document.uri, asked.position))
         path, positions = server.text(asked.text_document)
         if positions is None or server.project is None:

@@ -10,7 +10,7 @@ from lsprotocol import types
 
 from linkwright.language.definitions import NameDefinition, NameKind
 from linkwright.language.includes import real
-from linkwright.language.links import file_references
+from linkwright.language.links import FileReference, file_references
 from linkwright.language.occurrences import Occurrence, occurrences_in
 from linkwright.language.renaming import occurrence_at, references
 from linkwright.lsp.positions import TextPositions
@@ -152,6 +152,16 @@ def _tag_start(text: str, offset: int) -> int:
     return text.rfind("<", 0, offset)
 
 
+def _links(
+    server: LinkwrightServer, positions: TextPositions, references: Iterable[FileReference]
+) -> list[types.DocumentLink]:
+    return [
+        types.DocumentLink(positions.range(link.start, link.end), server.uri_of(link.file))
+        for link in references
+        if link.file.is_file()
+    ]
+
+
 def add_requests(server: LinkwrightServer) -> None:
     """Add the requests of this module to a server."""
 
@@ -159,17 +169,17 @@ def add_requests(server: LinkwrightServer) -> None:
     async def document_links(
         server: LinkwrightServer, asked: types.DocumentLinkParams
     ) -> list[types.DocumentLink] | None:
+        own = server.document(asked.text_document)
+        if own is not None:
+            found = await server.in_thread(lambda: [*own.format.links(own.document)])
+            return _links(server, own.positions, found)
         path, positions = server.text(asked.text_document)
         if positions is None or server.project is None:
             return None
         values = await server.values(path)
         server.check_unchanged(path, positions)
-        found = file_references(positions.text, path, server.project.finder(real(path)), values)
-        return [
-            types.DocumentLink(positions.range(link.start, link.end), server.uri_of(link.file))
-            for link in found
-            if link.file.is_file()
-        ]
+        finder = server.project.finder(real(path))
+        return _links(server, positions, file_references(positions.text, path, finder, values))
 
     @server.feature(types.WORKSPACE_SYMBOL)
     async def workspace_symbol(

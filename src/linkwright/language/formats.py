@@ -1,0 +1,15 @@
+"""The formats of files with functions of their own; the other XML files are read as descriptions."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from linkwright.language.format import Format
+
+FORMATS: tuple[Format, ...] = ()
+"""The formats, the first that covers a file decides."""
+
+
+def format_of(file: Path) -> Format | None:
+    """Return the format of a file, by its path; None if it has no functions of its own."""
+    return next((known for known in FORMATS if known.covers(file)), None)
