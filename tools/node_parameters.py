@@ -36,6 +36,8 @@ _LEFT_OUT = ("cam2image", "teleop_twist_keyboard", "rmw_zenohd", "_node.py", "st
 _PACKAGES_LEFT_OUT = ("gazebo_ros", "ros_gz_", "ros_ign_", "audio_", "demo_nodes", "tf2_tools", "my_robot_voice")
 _EVERYWHERE = ("use_sim_time", "qos_overrides", "start_type_description_service", "strict_callback_groups")
 _NEEDED: Mapping[str, dict[str, Any]] = {
+    "ekf_node": {f"{name}{number}": "a" for name in ("odom", "imu", "pose", "twist") for number in range(2)},
+    "ukf_node": {f"{name}{number}": "a" for name in ("odom", "imu", "pose", "twist") for number in range(2)},
     "lifecycle_manager": {"node_names": ["a"]},
     "robot_state_publisher": {"robot_description": _ROBOT},
     "delay": {"input_topic": "a"},
@@ -119,7 +121,7 @@ def _recording(found: Declarations) -> Iterator[None]:
 
 def _record(default: Any, descriptor: Any, entry: parameter_tables.TableEntry | None) -> dict[str, Any]:
     """Return the type, the default and the description of a parameter; what is not known is left out."""
-    kind = default if isinstance(default, ParameterType) else ParameterType.from_parameter_value(_plain(default))
+    kind = default if isinstance(default, ParameterType) else ParameterType.from_parameter_value(_listed(default))
     if kind is ParameterType.NOT_SET and descriptor is not None and descriptor.type:
         kind = ParameterType(descriptor.type)
     if entry is not None:
@@ -133,10 +135,17 @@ def _record(default: Any, descriptor: Any, entry: parameter_tables.TableEntry | 
     return record
 
 
+def _listed(value: Any) -> Any:
+    return list(value) if isinstance(value, tuple) else value
+
+
 def _plain(value: Any) -> Any:
+    """Return a value for JSON; numbers that it lacks are texts, as YAML has them."""
     if isinstance(value, (list, tuple)):
         return [_plain(item) for item in value]
-    return str(value) if isinstance(value, float) and not math.isfinite(value) else value
+    if isinstance(value, float) and not math.isfinite(value):
+        return f"{'-' if value < 0 else ''}.{'nan' if math.isnan(value) else 'inf'}"
+    return value
 
 
 def _start(executable: tuple[str, str], parameters: Mapping[str, Any], others: ParameterRules) -> None:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from linkwright.language.format import Format
+from linkwright.language.parameter_files import PARAMETER_FILES
 
-FORMATS: tuple[Format, ...] = ()
+FORMATS: tuple[Format, ...] = (PARAMETER_FILES,)
 """The formats, the first that covers a file decides."""
 
 
