@@ -1,7 +1,7 @@
 """Write the table of the parameters of Linkwright's nodes and their plugins, for the language server.
 
-Most nodes declare their parameters in code. Each node is therefore started in a graph without a network, as are the
-plugins of those that load plugins, and what they declare is recorded, with the descriptions of the tables that they read.
+Most nodes declare their parameters in code. Each node is therefore started in a graph without a network, with each type
+of plugins that it loads, and its declarations are recorded, with the descriptions of the tables that it reads.
 
 Usage: python tools/node_parameters.py [--check]
 """
@@ -68,12 +68,17 @@ def _plugins() -> Iterator[tuple[str, str, str, str]]:
         yield "controller_server", "controller_server", "goal_checker_plugins", f"nav2_controller/{kind}"
     for kind in ("SimpleProgressChecker", "PoseProgressChecker"):
         yield "controller_server", "controller_server", "progress_checker_plugins", f"nav2_controller/{kind}"
-    for kind in (planner_server._NAVFN, *planner_server._OTHERS):  # noqa: SLF001  # the tables of the node
+    for kind in (planner_server._NAVFN, *planner_server._OTHERS):  # the tables of the node
         yield "planner_server", "planner_server", "planner_plugins", kind
-    for kind, _ in behavior_server._TYPES.values():  # noqa: SLF001
+    for kind, _ in behavior_server._TYPES.values():
         yield "behavior_server", "behavior_server", "behavior_plugins", kind
     yield "smoother_server", "smoother_server", "smoother_plugins", "nav2_smoother/SimpleSmoother"
-    yield "waypoint_follower", "waypoint_follower", "waypoint_task_executor_plugin", "nav2_waypoint_follower/WaitAtWaypoint"
+    yield (
+        "waypoint_follower",
+        "waypoint_follower",
+        "waypoint_task_executor_plugin",
+        "nav2_waypoint_follower/WaitAtWaypoint",
+    )
     for kind in _layer_types():
         yield "controller_server", "local_costmap", "plugins", kind
 
@@ -85,7 +90,7 @@ Declarations = dict[str, dict[str, dict[str, Any]]]
 @contextmanager
 def _recording(found: Declarations) -> Iterator[None]:
     """Record the parameters that nodes declare."""
-    start, declare, read = NodeParameters.__init__, ParameterStore.declare, parameter_tables._Reader.read  # noqa: SLF001
+    start, declare, read = NodeParameters.__init__, ParameterStore.declare, parameter_tables._Reader.read
     owners: dict[int, str] = {}
     declared: list[tuple[ParameterStore, str, Any, Any]] = []
     tables: dict[tuple[str, str], parameter_tables.TableEntry] = {}
@@ -100,13 +105,13 @@ def _recording(found: Declarations) -> Iterator[None]:
 
     def reading(reader: Any, table: Any, prefix: str = "", usual: Any = None) -> Any:
         for entry in parameter_tables.entries(table, prefix):
-            tables.setdefault((reader._node.get_name(), entry.name), entry)  # noqa: SLF001
+            tables.setdefault((reader._node.get_name(), entry.name), entry)
         return read(reader, table, prefix, usual)
 
     with (
         mock.patch.object(NodeParameters, "__init__", starting),
         mock.patch.object(ParameterStore, "declare", declaring),
-        mock.patch.object(parameter_tables._Reader, "read", reading),  # noqa: SLF001
+        mock.patch.object(parameter_tables._Reader, "read", reading),
     ):
         yield
     for store, name, default, descriptor in declared:
@@ -167,16 +172,25 @@ def _nodes() -> Declarations:
         if not executable.endswith(_LEFT_OUT) and not package.startswith(_PACKAGES_LEFT_OUT):
             with _recording(found):
                 _start((package, executable), _NEEDED.get(executable, {}), ParameterRules())
-    return {node: found[node] for node in sorted(found) if found[node]}
+    return {node: _without_plugins(found[node]) for node in sorted(found) if found[node]}
+
+
+def _without_plugins(parameters: Mapping[str, dict[str, Any]]) -> dict[str, dict[str, Any]]:
+    """Return the parameters of a node without those of its default plugins, whose types a file may replace."""
+    plugins = tuple(name.removesuffix("plugin") for name in parameters if name.endswith(".plugin"))
+    return {
+        name: record for name, record in parameters.items() if not name.startswith(plugins) or name.endswith(".plugin")
+    }
 
 
 def _plugin_tables() -> Iterator[tuple[str, dict[str, Any]]]:
     """Yield the type of each plugin, with the nodes and parameters that list it, and its own parameters."""
     for executable, node, listed, kind in _plugins():
         names: Any = _PLUGIN if listed.endswith("_plugin") else [_PLUGIN]
-        given = {listed: names, f"{_PLUGIN}.plugin": kind, f"{_PLUGIN}.observation_sources": _ITEM}
+        given = {listed: names, f"{_PLUGIN}.plugin": kind}
         others = ParameterRules()
         if node != executable:
+            given[f"{_PLUGIN}.observation_sources"] = _ITEM
             for name, value in given.items():
                 others.set(f"/{node}/{node}", name, value)
         package = next(package for package, name in EXECUTABLES if name == executable)
@@ -185,9 +199,7 @@ def _plugin_tables() -> Iterator[tuple[str, dict[str, Any]]]:
             _start((package, executable), {} if node != executable else given, others)
         own = found[node]
         names_of_plugin = sorted(name for name in own if name.startswith(f"{_PLUGIN}."))
-        parameters = {
-            name.removeprefix(f"{_PLUGIN}.").replace(_ITEM, "*"): own[name] for name in names_of_plugin
-        }
+        parameters = {name.removeprefix(f"{_PLUGIN}.").replace(_ITEM, "*"): own[name] for name in names_of_plugin}
         parameters.pop("plugin", None)
         yield kind, {"node": node, "listed": listed, "parameters": parameters}
 

@@ -6,8 +6,9 @@ from pathlib import Path
 
 from linkwright.language.format import Format
 from linkwright.language.parameter_files import PARAMETER_FILES
+from linkwright.language.rviz_files import RVIZ_FILES
 
-FORMATS: tuple[Format, ...] = (PARAMETER_FILES,)
+FORMATS: tuple[Format, ...] = (PARAMETER_FILES, RVIZ_FILES)
 """The formats, the first that covers a file decides."""
 
 

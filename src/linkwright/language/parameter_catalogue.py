@@ -140,9 +140,7 @@ def plugin_types(node: str, listed: str = "") -> list[str]:
         listed: the parameter that names the plugins; empty for all.
     """
     owner = "local_costmap" if node.endswith("costmap") else node
-    return [
-        plugin.type for plugin in plugins().values() if plugin.node == owner and listed in ("", plugin.listed)
-    ]
+    return [plugin.type for plugin in plugins().values() if plugin.node == owner and listed in ("", plugin.listed)]
 
 
 def controller_types() -> list[str]:

@@ -22,7 +22,7 @@ from linkwright.language.parameter_catalogue import (
 )
 from linkwright.language.parameter_sections import PARAMETERS, Section, declared_controllers, section_at, sections
 from linkwright.language.robot_names import robot_names
-from linkwright.language.yaml_outline import Place, YamlCursor, YamlEntry, YamlOutline
+from linkwright.language.yaml_outline import Place, YamlCursor, YamlOutline
 from linkwright.language.yaml_symbols import by_typed, has_colon, snippet_text
 
 INTERFACES = ("position", "velocity", "effort", "acceleration")
@@ -44,6 +44,7 @@ def complete_parameters(document: Document, offset: int) -> list[Completion]:
     if cursor.place is Place.NOTHING:
         return []
     section = section_at(outline, cursor.within)
+    items: Iterable[Completion]
     if cursor.place is Place.KEY:
         colon = "" if has_colon(document.text, offset) else ":"
         items = _node_keys(outline, cursor, colon) if section is None else _keys(document, section, cursor, colon)
@@ -62,10 +63,10 @@ def _node_keys(outline: YamlOutline, cursor: YamlCursor, colon: str) -> Iterator
     is_top = cursor.within.parent is None
     if is_top and others and not any(sections(outline)):
         return  # another kind of file
-    body = f"{PARAMETERS}:\n    $0"
+    body, above = f"{PARAMETERS}:\n    $0", cursor.within.key
     if not is_top:
-        if cursor.within.key in _COSTMAPS and len(cursor.within.path) == 1 and not taken:
-            yield _key(cursor, cursor.within.key, "node", "", colon and f"{cursor.within.key}:\n  {PARAMETERS}:\n    $0")
+        if above in _COSTMAPS and len(cursor.within.path) == 1 and not taken:
+            yield _key(cursor, above, "node", "", colon and f"{above}:\n  {body}")
         if PARAMETERS not in taken:
             text = phrase("the parameters of the node")
             yield _key(cursor, PARAMETERS, "", text, colon and f"{PARAMETERS}:\n  $0")
@@ -116,9 +117,7 @@ def _keys(document: Document, section: Section, cursor: YamlCursor, colon: str) 
     for name, inside in groups.items():
         if name not in taken:
             shown = ", ".join(f"`{part}`" for part in dict.fromkeys(inside))
-            yield Completion(
-                name, ItemKind.NAME, cursor.start, "", shown, colon and f"{snippet_text(name)}:\n  $0"
-            )
+            yield Completion(name, ItemKind.NAME, cursor.start, "", shown, colon and f"{snippet_text(name)}:\n  $0")
 
 
 def _parameter_key(cursor: YamlCursor, label: str, parameter: ParameterInfo, colon: str) -> Completion:

@@ -93,7 +93,7 @@ def _explained_key(document: Document, outline: YamlOutline, entry: YamlEntry) -
     if plugin is not None:
         return f"**{entry.key}** " + _explained_plugin(plugin.scalar)
     inside = [known for known in section.parameters() if known.name.startswith(f"{name}.")]
-    facts = _part_facts(document, entry.key, (NameKind.JOINT, NameKind.LINK))
+    facts = part_explanation(document, entry.key, (NameKind.JOINT, NameKind.LINK))
     if facts:
         return facts
     return f"**{name}**: " + ", ".join(f"`{known.name.removeprefix(name)[1:]}`" for known in inside) if inside else ""
@@ -133,14 +133,14 @@ def _explained_value(document: Document, outline: YamlOutline, cursor: YamlCurso
         return f"`{word}`: {purpose}"
     if word.replace("::", "/") in plugins():
         return _explained_plugin(word)
-    facts = _part_facts(document, word, kinds_of_parameter(last))
+    facts = part_explanation(document, word, kinds_of_parameter(last))
     if facts:
         return facts
     parameter = section.find(section.prefix)
     return "" if parameter is None else described(parameter, section.prefix)
 
 
-def _part_facts(document: Document, name: str, kinds: tuple[NameKind, ...]) -> str:
+def part_explanation(document: Document, name: str, kinds: tuple[NameKind, ...]) -> str:
     """Return the facts about a link or joint in the robots that a file is likely to be about."""
     for found in robot_names(document.project, document.texts, document.file):
         if found.name == name and found.kind in kinds:
@@ -175,9 +175,7 @@ def define_in_parameters(document: Document, offset: int) -> Iterator[Target]:
             return
 
 
-def _declaration(
-    outline: YamlOutline, section: Section | None, cursor: YamlCursor, word: str
-) -> YamlEntry | None:
+def _declaration(outline: YamlOutline, section: Section | None, cursor: YamlCursor, word: str) -> YamlEntry | None:
     """Return the entry that declares a controller or a plugin: from its parameters, or from a list of names."""
     if cursor.place is Place.VALUE and section is not None:
         entry = section.entry.child(word)

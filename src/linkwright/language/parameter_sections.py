@@ -72,7 +72,9 @@ class Section:
     def _of_plugins(self, given: Mapping[str, YamlEntry]) -> Iterator[ParameterInfo]:
         for name, entry in given.items():
             prefix, _, last = name.rpartition(".")
-            plugin = plugins().get(entry.scalar.replace("::", "/")) if last in ("plugin", "primary_controller") else None
+            plugin = (
+                plugins().get(entry.scalar.replace("::", "/")) if last in ("plugin", "primary_controller") else None
+            )
             if plugin is not None and prefix:
                 yield from (parameter.below(prefix, plugin.type) for parameter in plugin.parameters)
 

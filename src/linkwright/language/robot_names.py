@@ -66,11 +66,17 @@ def _likely_robots(project: Workspace, texts: Mapping[Path, str], file: Path) ->
     name, folder = ("", file.parent) if package is None else (package[1].name, real(package[1]))
 
     def distance(entry: Path) -> tuple[bool, int]:
-        shared = max(len(os.path.commonprefix([name, part])) for part in entry.parts)
+        shared = max(_common_beginning(name, part) for part in entry.parts)
         return not entry.is_relative_to(folder), -shared
 
     entries = [entry for entry in project.index.roots(texts) if entry.name.endswith(_ENDINGS)]
     return sorted(entries, key=distance)[:_MAX_ROBOTS]
+
+
+def _common_beginning(name: str, other: str) -> int:
+    """Return the number of characters with which both names begin."""
+    pairs = zip(name, other, strict=False)
+    return next((number for number, (a, b) in enumerate(pairs) if a != b), min(len(name), len(other)))
 
 
 def _read(project: Workspace, texts: Mapping[Path, str], entry: Path) -> _Robot:
@@ -80,9 +86,7 @@ def _read(project: Workspace, texts: Mapping[Path, str], entry: Path) -> _Robot:
     except (LinkwrightError, OSError, RecursionError):
         text = project.text(entry, texts) or ""
         literal = (name for name in definitions_in(text, entry) if "$" not in name.name)
-        return _Robot(
-            _state([str(entry)], texts), tuple(name for name in literal if name.kind in _KINDS.values())
-        )
+        return _Robot(_state([str(entry)], texts), tuple(name for name in literal if name.kind in _KINDS.values()))
     names: list[NameDefinition] = []
     for element in expansion.document.root.elements():
         kind, name = _KINDS.get(element.tag), element.attributes.get("name")
@@ -97,7 +101,7 @@ def _read(project: Workspace, texts: Mapping[Path, str], entry: Path) -> _Robot:
 
 
 def _state(files: Iterator[str] | list[str] | map[str], texts: Mapping[Path, str]) -> _State:
-    state = []
+    state: list[tuple[str, object]] = []
     for file in files:
         text = texts.get(Path(file)) or texts.get(real(file))
         try:

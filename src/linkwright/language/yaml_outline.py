@@ -1,7 +1,7 @@
 """The keys and items of a YAML text in any state, by the indentation of its lines.
 
-This is no parser: anchors, tags and flows over many lines are read as texts. It is for texts that are being typed, of which
-a parser would only say that they are not YAML.
+This is not a parser: anchors and tags are part of the texts. It reads texts that are being typed, of which a parser
+would only say that they are not YAML.
 """
 
 from __future__ import annotations
@@ -13,9 +13,11 @@ from enum import Enum
 
 from linkwright.loading.deferred import lazy_pattern
 
-MAX_TEXT = 2_000_000
+MAX_TEXT = 500_000
 """Characters; longer files are data and not configuration."""
 _MAX_FLOW_LINES = 300
+_MAX_DASHES = 20
+"""Items that begin in one line."""
 _MAX_KEY = 500
 _KEY = lazy_pattern(r"""("(?:[^"\\\n]|\\.)*"|'[^'\n]*'|(?![\s#\[\]{},"'&!|>@`])[^\n]*?):(?=\s|$)""")
 _BLOCK_TEXT = lazy_pattern(r"[|>][+-]?\d?[+-]?\s*$")
@@ -216,15 +218,13 @@ class YamlOutline:
             self._last.append(stack[-1])
             offset += len(line) + 1
 
-    def _read_line(
-        self, line: str, column: int, offset: int, number: int, stack: list[YamlEntry]
-    ) -> YamlEntry | None:
+    def _read_line(self, line: str, column: int, offset: int, number: int, stack: list[YamlEntry]) -> YamlEntry | None:
         """Add the entries of a line, and return the last."""
         added: YamlEntry | None = None
         end = _comment_start(line, column)
         if end < len(line):
             self._comments[number] = offset + end
-        while column < end:
+        for _ in range(_MAX_DASHES):
             rest = line[column:end]
             if rest.startswith("-") and rest[1:2] in ("", " ", "\t", "\r"):
                 _leave(stack, column, is_item=True)
@@ -244,9 +244,7 @@ class YamlOutline:
             value = rest[match.end() :]
             space = len(value) - len(value.lstrip(" \t"))
             begin = offset + column + match.end() + space
-            added = YamlEntry(
-                unquoted(match[1]), column, offset + column, value.strip(), begin, number, stack[-1]
-            )
+            added = YamlEntry(unquoted(match[1]), column, offset + column, value.strip(), begin, number, stack[-1])
             stack[-1].children.append(added)
             stack.append(added)
             break
@@ -300,7 +298,9 @@ def _comment_start(line: str, column: int) -> int:
 def _flow_end(text: str, start: int, column: int) -> int:
     """Return the offset behind a flow; one that is not closed ends before the next key at the column of its own."""
     depth, offset = 0, start
-    for number, line in enumerate(text[start : start + 100_000].split("\n")[:_MAX_FLOW_LINES]):
+    for number in range(_MAX_FLOW_LINES):
+        line_end = text.find("\n", offset)
+        line = text[offset : line_end if line_end >= 0 else len(text)]
         content = line.lstrip(" \t")
         if number and content.strip() and len(line) - len(content) <= column and content[0] not in "]}":
             break
@@ -317,6 +317,8 @@ def _flow_end(text: str, start: int, column: int) -> int:
                 if depth <= 0:
                     return offset + index + 1
         offset += len(line) + 1
+        if line_end < 0:
+            break
     return min(offset - 1, len(text))
 
 
@@ -388,9 +390,10 @@ def _value_cursor(text: str, entry: YamlEntry, offset: int) -> YamlCursor:
         in_list = True
         if entry.value.startswith("{"):
             key, colon, _ = text[start:offset].partition(":")
-            start += len(text[start:offset]) - len(text[start:offset].lstrip())
             if not colon:
+                start = max(start + len(key) - len(key.lstrip()), text.rfind("\n", 0, offset) + 1)
                 return YamlCursor(Place.KEY, offset, entry, start, key.strip())
+    start = max(start, text.rfind("\n", 0, offset) + 1)
     typed = text[start:offset]
     start += len(typed) - len(typed.lstrip())
     if text[start : start + 1] in ('"', "'") and offset > start:

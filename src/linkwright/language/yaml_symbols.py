@@ -14,8 +14,6 @@ _NAMING = ("Name", "name", "Class", "type", "plugin")
 """Keys whose value names an item of a list, the first that it has."""
 
 
-
-
 def yaml_symbols(document: Document) -> list[Symbol]:
     """Return the keys of a YAML text as symbols."""
     outline = YamlOutline(document.text)
@@ -39,7 +37,12 @@ def _symbols(entries: Iterable[YamlEntry], depth: int) -> Iterator[Symbol]:
         is_node = entry.child("ros__parameters") is not None
         detail = " ".join(entry.value.split())[:60]
         yield Symbol(
-            entry.key, SymbolKind.NODE if is_node else kind, entry.start, entry.end, children, "" if children else detail
+            entry.key,
+            SymbolKind.NODE if is_node else kind,
+            entry.start,
+            entry.end,
+            children,
+            "" if children else detail,
         )
 
 

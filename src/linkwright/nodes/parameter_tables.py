@@ -132,7 +132,7 @@ class TableEntry:
     keys: tuple[str, ...] = ()
 
 
-def entries(table: type[Any], prefix: str = "", keys: tuple[str, ...] = ()) -> Iterator[TableEntry]:
+def entries(table: Any, prefix: str = "", keys: tuple[str, ...] = ()) -> Iterator[TableEntry]:
     """Yield the parameters of a table, without a node.
 
     A parameter without a description has the one that the docstring of the table gives below ``Attributes:``.
@@ -159,7 +159,7 @@ def entries(table: type[Any], prefix: str = "", keys: tuple[str, ...] = ()) -> I
             yield TableEntry(name, _TYPES[kinds[entry.name]], default, description, choices, about.only, keys)
 
 
-def _attributes(table: type[Any]) -> dict[str, str]:
+def _attributes(table: Any) -> dict[str, str]:
     """Return the descriptions of fields in a docstring."""
     _, _, text = cleandoc(table.__doc__ or "").partition("\nAttributes:\n")
     return {found[1]: " ".join(found[2].split()) for found in _ATTRIBUTE.finditer(text)}
