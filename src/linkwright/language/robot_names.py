@@ -20,7 +20,7 @@ from linkwright.xmltree.positions import start_tag_end
 
 _ENDINGS = (".urdf", ".xacro")
 _MAX_ROBOTS = 6
-_MAX_SECONDS = 1.0
+_MAX_SECONDS = 0.5
 _KINDS = {"link": NameKind.LINK, "joint": NameKind.JOINT}
 _State = tuple[tuple[str, object], ...]
 """The files of an expansion, each with its open text or the time of its last change."""

@@ -25,7 +25,7 @@ from linkwright.rviz.config.former_names import modern_class
 from linkwright.rviz.config.rviz_config import GLOBAL_OPTIONS
 from linkwright.rviz.config.schema import FIXED_FRAME, PropertySpec, Schema, to_text
 from linkwright.rviz.config.tools import TOOL_KINDS
-from linkwright.rviz.config.views import VIEW_SCHEMAS
+from linkwright.rviz.config.views import ORBIT, VIEW_SCHEMAS
 
 _DISPLAYS = "linkwright.displays"
 _LISTS = ("Displays", "Tools", "Panels", "Saved")
@@ -243,7 +243,7 @@ def _classes(owner: _Owner) -> Iterator[tuple[str, str]]:
         for name, tool in TOOL_KINDS.items():
             yield name, tool.name
     elif owner.role == "Views":
-        for name in VIEW_SCHEMAS:
+        for name in sorted(VIEW_SCHEMAS, key=lambda name: name != ORBIT):
             yield name, ""
     elif owner.role == "Panels":
         for name in _PANELS:

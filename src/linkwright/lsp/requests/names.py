@@ -65,10 +65,14 @@ def items(
 ) -> list[types.CompletionItem]:
     """Return completions at a place as the protocol has them, in the same order."""
     offset = positions.offset(place)
-    return [_item(item, positions, offset, takes_snippets=takes_snippets) for item in found]
+    return [
+        _item(item, positions, offset, rank, takes_snippets=takes_snippets) for rank, item in enumerate(found)
+    ]
 
 
-def _item(item: Completion, positions: TextPositions, offset: int, *, takes_snippets: bool) -> types.CompletionItem:
+def _item(
+    item: Completion, positions: TextPositions, offset: int, rank: int, *, takes_snippets: bool
+) -> types.CompletionItem:
     is_snippet = bool(item.snippet) and takes_snippets
     edit = types.TextEdit(positions.range(item.start, offset), item.snippet if is_snippet else item.label)
     return types.CompletionItem(
@@ -76,6 +80,7 @@ def _item(item: Completion, positions: TextPositions, offset: int, *, takes_snip
         kind=_KINDS[item.kind],
         detail=item.detail or None,
         documentation=_markdown(item.description) if item.description else None,
+        sort_text=f"{rank:05}",
         insert_text_format=types.InsertTextFormat.Snippet if is_snippet else types.InsertTextFormat.PlainText,
         filter_text=f"<{item.label}" if item.snippet.startswith("<") else None,
         text_edit=edit,
@@ -171,6 +176,8 @@ def add_requests(server: LinkwrightServer) -> None:
         takes_snippets = bool(item and item.snippet_support)
         own = server.document(asked.text_document)
         if own is not None:
+            await server.when_indexed()
+            server.check_unchanged(own.document.file, own.positions)
             found = own.format.complete(own.document, own.positions.offset(asked.position))
             return items(found, own.positions, asked.position, takes_snippets=takes_snippets)
         path, positions = server.text(asked.text_document)
