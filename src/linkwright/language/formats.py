@@ -5,8 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 from linkwright.language.format import Format
+from linkwright.language.launch_python import LAUNCH_PYTHON
+from linkwright.language.launch_xml import LAUNCH_XML
 
-FORMATS: tuple[Format, ...] = ()
+FORMATS: tuple[Format, ...] = (LAUNCH_XML, LAUNCH_PYTHON)
 """The formats, the first that covers a file decides."""
 
 
