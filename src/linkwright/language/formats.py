@@ -5,10 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 from linkwright.language.format import Format
+from linkwright.language.interfaces import INTERFACES
 from linkwright.language.launch_python import LAUNCH_PYTHON
 from linkwright.language.launch_xml import LAUNCH_XML
 
-FORMATS: tuple[Format, ...] = (LAUNCH_XML, LAUNCH_PYTHON)
+FORMATS: tuple[Format, ...] = (LAUNCH_XML, LAUNCH_PYTHON, INTERFACES)
 """The formats, the first that covers a file decides."""
 
 
