@@ -8,8 +8,10 @@ from linkwright.language.format import Format
 from linkwright.language.interfaces import INTERFACES
 from linkwright.language.launch_python import LAUNCH_PYTHON
 from linkwright.language.launch_xml import LAUNCH_XML
+from linkwright.language.manifest import PACKAGE_XML
+from linkwright.language.srdf import SRDF_FILES
 
-FORMATS: tuple[Format, ...] = (LAUNCH_XML, LAUNCH_PYTHON, INTERFACES)
+FORMATS: tuple[Format, ...] = (LAUNCH_XML, LAUNCH_PYTHON, INTERFACES, PACKAGE_XML, SRDF_FILES)
 """The formats, the first that covers a file decides."""
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from linkwright.schema import AttributeRule, ElementRule, ValueType
 
 _NAME = ValueType("name")
-_LINK = ValueType("name of a link")
-_JOINT = ValueType("name of a joint")
-_GROUP = ValueType("name of a group")
+LINK = ValueType("name of a link")
+JOINT = ValueType("name of a joint")
+GROUP = ValueType("name of a group")
 _NUMBER = ValueType("number")
 
 
@@ -26,8 +26,8 @@ def _pair_of_links(tag: str, meaning: str) -> ElementRule:
     return _element(
         tag,
         meaning,
-        _required("link1", _LINK, "the first link"),
-        _required("link2", _LINK, "the second link"),
+        _required("link1", LINK, "the first link"),
+        _required("link2", LINK, "the second link"),
         *((reason,) if tag == "disable_collisions" else ()),
     )
 
@@ -42,13 +42,13 @@ SRDF = ElementRule(
             "links and joints that are planned together",
             _required("name", _NAME, "the name of the group"),
             children=(
-                _element("link", "a link, with its parent joint", _required("name", _LINK, "the link")),
-                _element("joint", "a joint, with its child link", _required("name", _JOINT, "the joint")),
+                _element("link", "a link, with its parent joint", _required("name", LINK, "the link")),
+                _element("joint", "a joint, with its child link", _required("name", JOINT, "the joint")),
                 _element(
                     "chain",
                     "all links from one link to another",
-                    _required("base_link", _LINK, "the first link, which is not part of the chain"),
-                    _required("tip_link", _LINK, "the last link"),
+                    _required("base_link", LINK, "the first link, which is not part of the chain"),
+                    _required("tip_link", LINK, "the last link"),
                 ),
             ),
             nests=True,
@@ -57,12 +57,12 @@ SRDF = ElementRule(
             "group_state",
             "a position of a group with a name",
             _required("name", _NAME, "the name of the position"),
-            _required("group", _GROUP, "the group"),
+            _required("group", GROUP, "the group"),
             children=(
                 _element(
                     "joint",
                     "the position of a joint",
-                    _required("name", _JOINT, "the joint"),
+                    _required("name", JOINT, "the joint"),
                     _required("value", _NUMBER, "the position", "rad or m"),
                 ),
             ),
@@ -71,9 +71,9 @@ SRDF = ElementRule(
             "end_effector",
             "a group that is the tool of another group",
             _required("name", _NAME, "the name of the end effector"),
-            _required("group", _GROUP, "the group of its links"),
-            _required("parent_link", _LINK, "the link that it is attached to"),
-            AttributeRule("parent_group", _GROUP, "the group of the arm"),
+            _required("group", GROUP, "the group of its links"),
+            _required("parent_link", LINK, "the link that it is attached to"),
+            AttributeRule("parent_group", GROUP, "the group of the arm"),
         ),
         _element(
             "virtual_joint",
@@ -81,20 +81,20 @@ SRDF = ElementRule(
             _required("name", _NAME, "the name of the joint"),
             _required("type", ValueType("fixed, floating or planar"), "the type of the joint"),
             _required("parent_frame", _NAME, "the frame of the world"),
-            _required("child_link", _LINK, "the root link of the robot"),
+            _required("child_link", LINK, "the root link of the robot"),
         ),
-        _element("passive_joint", "a joint without an actuator", _required("name", _JOINT, "the joint")),
+        _element("passive_joint", "a joint without an actuator", _required("name", JOINT, "the joint")),
         _pair_of_links("disable_collisions", "two links whose collisions are not checked"),
         _pair_of_links("enable_collisions", "two links whose collisions are checked"),
         _element(
             "disable_default_collisions",
             "a link whose collisions are not checked unless enabled",
-            _required("link", _LINK, "the link"),
+            _required("link", LINK, "the link"),
         ),
         _element(
             "link_sphere_approximation",
             "spheres that replace the collision shapes of a link",
-            _required("link", _LINK, "the link"),
+            _required("link", LINK, "the link"),
             children=(
                 _element(
                     "sphere",
@@ -107,7 +107,7 @@ SRDF = ElementRule(
         _element(
             "joint_property",
             "a property of a joint for planners",
-            _required("joint_name", _JOINT, "the joint"),
+            _required("joint_name", JOINT, "the joint"),
             _required("property_name", _NAME, "the name of the property"),
             _required("value", ValueType("text"), "the value"),
         ),
