@@ -81,9 +81,7 @@ class Typing:
         document, offset = self.document(marked, name)
         found = [*format_of(document.file).define(document, offset)]
         texts = [document.text if target.file == document.file else document.other(target.file) for target in found]
-        return [
-            (target.file.name, text[target.start : target.end]) for target, text in zip(found, texts, strict=True)
-        ]
+        return [(target.file.name, text[target.start : target.end]) for target, text in zip(found, texts, strict=True)]
 
 
 @pytest.fixture

@@ -1,4 +1,4 @@
-"""What an editor asks about a file of any format, and the functions of a format that answer."""
+"""The requests of an editor about a file of any format, and the functions of a format that answer them."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Document:
 
     @property
     def finder(self) -> PackageFinder:
-        """What finds packages for the file."""
+        """The finder of packages for the file."""
         return self.project.finder(self.file)
 
     def other(self, file: Path) -> str:

@@ -56,23 +56,23 @@ def completions(
         place: the place.
         takes_snippets: whether the editor understands snippets.
     """
-    found = complete(positions.text, positions.offset(place), path, names, partial(project.finder, path))
-    return items(found, positions, place, takes_snippets=takes_snippets)
+    offset = positions.offset(place)
+    found = complete(positions.text, offset, path, names, partial(project.finder, path))
+    return [_item(item, positions, offset, takes_snippets=takes_snippets) for item in found]
 
 
 def items(
     found: Iterable[Completion], positions: TextPositions, place: types.Position, *, takes_snippets: bool
 ) -> list[types.CompletionItem]:
-    """Return completions at a place as the protocol has them, in the same order."""
+    """Return completions at a place as the protocol has them; editors keep their order."""
     offset = positions.offset(place)
-    return [
-        _item(item, positions, offset, rank, takes_snippets=takes_snippets) for rank, item in enumerate(found)
-    ]
+    listed = [_item(item, positions, offset, takes_snippets=takes_snippets) for item in found]
+    for number, item in enumerate(listed):
+        item.sort_text = f"{number:05}"
+    return listed
 
 
-def _item(
-    item: Completion, positions: TextPositions, offset: int, rank: int, *, takes_snippets: bool
-) -> types.CompletionItem:
+def _item(item: Completion, positions: TextPositions, offset: int, *, takes_snippets: bool) -> types.CompletionItem:
     is_snippet = bool(item.snippet) and takes_snippets
     edit = types.TextEdit(positions.range(item.start, offset), item.snippet if is_snippet else item.label)
     return types.CompletionItem(
@@ -80,7 +80,6 @@ def _item(
         kind=_KINDS[item.kind],
         detail=item.detail or None,
         documentation=_markdown(item.description) if item.description else None,
-        sort_text=f"{rank:05}",
         insert_text_format=types.InsertTextFormat.Snippet if is_snippet else types.InsertTextFormat.PlainText,
         filter_text=f"<{item.label}" if item.snippet.startswith("<") else None,
         text_edit=edit,
@@ -167,7 +166,7 @@ def _markdown(text: str | Phrase) -> types.MarkupContent:
 def add_requests(server: LinkwrightServer) -> None:
     """Add the requests of this module to a server."""
 
-    @server.feature(types.TEXT_DOCUMENT_COMPLETION, types.CompletionOptions(["<", " ", '"', "/", "{", "(", ":"]))
+    @server.feature(types.TEXT_DOCUMENT_COMPLETION, types.CompletionOptions(["<", " ", '"', "'", "/", "{", "(", ":"]))
     async def completion_request(
         server: LinkwrightServer, asked: types.CompletionParams
     ) -> list[types.CompletionItem] | None:
