@@ -11,9 +11,11 @@ from __future__ import annotations
 import asyncio
 import json
 import math
+import re
 import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 from unittest import mock
@@ -28,8 +30,13 @@ from linkwright.nodes import parameter_tables
 from linkwright.nodes.options import EXECUTABLES, NodeOptions
 
 ROOT = Path(__file__).resolve().parent.parent
+TEXTS = ROOT / "tools" / "node_parameters.toml"
 LIST = ROOT / "src" / "linkwright" / "language" / "node_parameters.json"
 
+tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
+
+_FOLLOWERS = (followers.DWB, followers.MPPI, followers.PURE_PURSUIT, followers.ROTATION_SHIM)
+_SENSOR = re.compile(r"^(odom|imu|pose|twist)\d")
 _PLUGIN, _ITEM = "THE_PLUGIN", "THE_ITEM"
 _ROBOT = '<robot name="r"><link name="base_link"/></robot>'
 _LEFT_OUT = ("cam2image", "teleop_twist_keyboard", "rmw_zenohd", "_node.py", "static_transform_publisher")
@@ -62,7 +69,7 @@ def _layer_types() -> list[str]:
 
 def _plugins() -> Iterator[tuple[str, str, str, str]]:
     """Yield the executable, the node, the parameter that lists plugins, and the type of each plugin."""
-    for kind in (followers.DWB, followers.MPPI, followers.PURE_PURSUIT, followers.ROTATION_SHIM):
+    for kind in _FOLLOWERS:
         yield "controller_server", "controller_server", "controller_plugins", kind
     for kind in ("SimpleGoalChecker", "StoppedGoalChecker"):
         yield "controller_server", "controller_server", "goal_checker_plugins", f"nav2_controller/{kind}"
@@ -88,8 +95,8 @@ Declarations = dict[str, dict[str, dict[str, Any]]]
 
 
 @contextmanager
-def _recording(found: Declarations) -> Iterator[None]:
-    """Record the parameters that nodes declare."""
+def _recording(found: Declarations, given: Mapping[str, Any]) -> Iterator[None]:
+    """Record the parameters that nodes declare; values that they were given are not their defaults."""
     start, declare, read = NodeParameters.__init__, ParameterStore.declare, parameter_tables._Reader.read
     owners: dict[int, str] = {}
     declared: list[tuple[ParameterStore, str, Any, Any]] = []
@@ -118,6 +125,8 @@ def _recording(found: Declarations) -> Iterator[None]:
         owner = owners[id(store)]
         if not name.startswith(_EVERYWHERE):
             record = _record(default, descriptor, tables.get((owner, name)))
+            if name in given and record.get("default") == given[name]:
+                del record["default"]
             found.setdefault(owner, {}).setdefault(name, record)
     for (owner, name), entry in tables.items():  # those of one distribution, which are not declared in the other one
         if "*" not in name:
@@ -170,8 +179,9 @@ def _nodes() -> Declarations:
     found: Declarations = {}
     for package, executable in EXECUTABLES:
         if not executable.endswith(_LEFT_OUT) and not package.startswith(_PACKAGES_LEFT_OUT):
-            with _recording(found):
-                _start((package, executable), _NEEDED.get(executable, {}), ParameterRules())
+            given = _NEEDED.get(executable, {})
+            with _recording(found, given):
+                _start((package, executable), given, ParameterRules())
     return {node: _without_plugins(found[node]) for node in sorted(found) if found[node]}
 
 
@@ -195,7 +205,7 @@ def _plugin_tables() -> Iterator[tuple[str, dict[str, Any]]]:
                 others.set(f"/{node}/{node}", name, value)
         package = next(package for package, name in EXECUTABLES if name == executable)
         found: Declarations = {}
-        with _recording(found):
+        with _recording(found, given):
             _start((package, executable), {} if node != executable else given, others)
         own = found[node]
         names_of_plugin = sorted(name for name in own if name.startswith(f"{_PLUGIN}."))
@@ -204,9 +214,36 @@ def _plugin_tables() -> Iterator[tuple[str, dict[str, Any]]]:
         yield kind, {"node": node, "listed": listed, "parameters": parameters}
 
 
+def _describe(owner: str, parameters: dict[str, dict[str, Any]], texts: Mapping[str, Any]) -> None:
+    """Add the written descriptions to parameters without one, and the parameters that are only written."""
+    groups = {
+        "COSTMAP": owner.endswith("_costmap"),
+        "ROBOT_LOCALIZATION": owner.endswith(("kf_filter_node",)),
+        "LAYER": owner.startswith("nav2_costmap_2d"),
+        "FOLLOWER": owner.replace("::", "/") in _FOLLOWERS,
+    }
+    package, _, name = owner.partition("/")
+    tables = [texts.get(owner, {}), texts.get(package, {}).get(name, {})]
+    tables += [texts[group] for group, applies in groups.items() if applies]
+    for table in [*tables[:1], *([texts["FOLLOWER"]] if owner == followers.MPPI else [])]:
+        parameters |= {name: entry for name, entry in table.items() if isinstance(entry, dict) and "type" in entry}
+    for parameter, record in parameters.items():
+        key = _SENSOR.sub("SENSOR", parameter) if groups["ROBOT_LOCALIZATION"] else parameter.replace(_ITEM, "*")
+        key = "plugin" if key.endswith(".plugin") else key
+        text = next((table[key] for table in [*tables, texts["any"]] if isinstance(table.get(key), str)), "")
+        if text and "description" not in record:
+            record["description"] = text
+
+
 async def _table() -> str:
+    texts = tomllib.loads(TEXTS.read_text(encoding="utf-8"))
     nodes = _nodes()
+    nodes.setdefault("controller_manager", {})
     plugins = dict(_plugin_tables())
+    for owner, parameters in nodes.items():
+        _describe(owner, parameters, texts)
+    for owner, plugin in plugins.items():
+        _describe(owner, plugin["parameters"], texts)
     content = {"nodes": nodes, "plugins": plugins}
     return json.dumps(content, indent=1, ensure_ascii=False, sort_keys=True).replace(_ITEM, "*") + "\n"
 
