@@ -27,7 +27,7 @@ class ParameterInfo:
     """A parameter.
 
     Attributes:
-        name: the name with dots; ``*`` stands for any name, as in ``gains.*.p``.
+        name: the name with dots; ``*`` is any name, as in ``gains.*.p``.
         type: the type, as ROS 2 names it: ``double``, ``string_array``; empty if it is not known.
         default: the default value; None if there is none.
         description: the purpose, with its unit; may be empty.

@@ -34,6 +34,8 @@ _USUAL_CONTROLLERS = (
     "joint_trajectory_controller/JointTrajectoryController",
     "diff_drive_controller/DiffDriveController",
 )
+_NUMBERED = re.compile(r"[a-z]+\d+(_|$)")
+"""A parameter of one of several sensors, such as ``odom0_config``."""
 _COSTMAPS = ("local_costmap", "global_costmap")
 
 
@@ -99,7 +101,7 @@ def _keys(document: Document, section: Section, cursor: YamlCursor, colon: str) 
     place = section.prefix.split(".") if section.prefix else []
     groups: dict[str, list[str]] = {}
     dotted: list[Completion] = []
-    for parameter in section.parameters():
+    for parameter in sorted(section.parameters(), key=lambda parameter: bool(_NUMBERED.match(parameter.name))):
         parts = parameter.name.split(".")
         if len(parts) <= len(place) or any(a not in ("*", b) for a, b in zip(parts, place, strict=False)):
             continue
@@ -111,13 +113,15 @@ def _keys(document: Document, section: Section, cursor: YamlCursor, colon: str) 
             elif len(rest) > 1:
                 groups.setdefault(first, []).append(".".join(rest[1:]))
                 name = ".".join([first, *rest[1:]])
-                if "." in cursor.typed and "*" not in name and name not in taken:
+                if "*" not in name and name not in taken:
                     dotted.append(_parameter_key(cursor, name, parameter, colon))
-    yield from dotted
+    uses_dots = any("." in name for name in taken)
+    yield from dotted if uses_dots else ()
     for name, inside in groups.items():
         if name not in taken:
             shown = ", ".join(f"`{part}`" for part in dict.fromkeys(inside))
             yield Completion(name, ItemKind.NAME, cursor.start, "", shown, colon and f"{snippet_text(name)}:\n  $0")
+    yield from dotted
 
 
 def _parameter_key(cursor: YamlCursor, label: str, parameter: ParameterInfo, colon: str) -> Completion:
@@ -149,7 +153,7 @@ def described(parameter: ParameterInfo, name: str = "") -> str:
 
 
 def _names_for(document: Document, section: Section, parameter: ParameterInfo) -> list[str]:
-    """Return the names that may stand for ``*``: those in the parameters that list them, or all joints."""
+    """Return the names for ``*``: those in the parameters that list them, or all joints."""
     given = section.given()
     names = [
         name
@@ -200,8 +204,8 @@ def _values(document: Document, section: Section, cursor: YamlCursor) -> Iterato
         return Completion(label, kind, cursor.start, detail, description, snippet)
 
     taken = {text for text, start in cursor.within.items() if start != cursor.start}
-    if last == "type" and section.is_manager:
-        for kind in _resembling(controller_types(), name.rpartition(".")[0]):
+    if last == "type" and (section.is_manager or (section.may_be_controller and name == "type")):
+        for kind in _resembling(controller_types(), name.rpartition(".")[0] or section.node):
             yield item(kind, description=controller_purpose(kind) or "")
     elif last in ("plugin", "primary_controller"):
         for kind in _plugin_types(section, name.rpartition(".")[0], last):

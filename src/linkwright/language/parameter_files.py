@@ -79,7 +79,7 @@ def _explained_key(document: Document, outline: YamlOutline, entry: YamlEntry) -
     kind = entry.child("type")
     if section.is_manager and not section.prefix and kind is not None:
         return f"**{entry.key}** `{kind.scalar}`\n\n{controller_purpose(kind.scalar) or ''}".strip()
-    if section.is_manager and entry.key == "type":
+    if entry.key == "type" and (section.is_manager or section.may_be_controller):
         purpose = controller_purpose(entry.scalar)
         text = localized(phrase("the type of the controller"))
         return f"**type** `string`\n\n{text}" + (f"\n\n`{entry.scalar}`: {purpose}" if purpose else "")
@@ -185,6 +185,8 @@ def _declaration(outline: YamlOutline, section: Section | None, cursor: YamlCurs
         return None
     kind = controller_declarations(outline).get(word.rpartition("/")[2])
     entry = kind if kind is None or kind.key != "type" else kind.parent
+    if entry is not None and entry.key == PARAMETERS:
+        entry = entry.parent
     if entry is None or entry is cursor.entry:
         name = word if entry is not None else ""
         return next((other for other in outline.root.all() if other.key == name and other is not entry), None)

@@ -22,6 +22,7 @@ PARAMETERS = "ros__parameters"
 _EVERY_NODE = ParameterInfo(
     "use_sim_time", "bool", False, "whether the node takes the time from the topic `/clock` of a simulator"
 )
+_TYPE = ParameterInfo("type", "string", None, "the type of the controller, if the node is one")
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +46,11 @@ class Section:
         """Whether the node is a controller manager."""
         return self.node == MANAGER or _declares_controllers(self.entry)
 
+    @property
+    def may_be_controller(self) -> bool:
+        """Whether the node is a controller, or a node that is not known."""
+        return bool(self.node) and not self.is_manager and not node_parameters(self.node)
+
     def name(self, key: str) -> str:
         """Return the name of a parameter with a key at the place."""
         return f"{self.prefix}.{key}" if self.prefix else key
@@ -63,6 +69,8 @@ class Section:
             own = [parameter for owner in owners for parameter in node_parameters(owner)]
             if not owners and not self.node:
                 own = [_EVERY_NODE, *_common_parameters()]
+        if self.may_be_controller:
+            own.append(_TYPE)
         return [*own, *self._of_plugins(given), _EVERY_NODE]
 
     def find(self, name: str) -> ParameterInfo | None:
@@ -113,9 +121,15 @@ def declared_controllers(outline: YamlOutline) -> dict[str, str]:
 
 
 def controller_declarations(outline: YamlOutline) -> dict[str, YamlEntry]:
-    """Return the entries with the types of controllers, by the controller's name."""
+    """Return the entries with the types of controllers, by the controller's name.
+
+    A controller is declared by its manager, or by a parameter ``type`` of its own.
+    """
     found: dict[str, YamlEntry] = {}
     for section in sections(outline):
+        own, node = section.child("type"), node_of(section)
+        if own is not None and node and "/" in own.scalar:
+            found[node] = own
         for child in section.children:
             name, dot, last = child.key.rpartition(".")
             kind = child if dot and last == "type" else child.child("type")

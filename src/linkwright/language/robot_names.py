@@ -19,7 +19,7 @@ from linkwright.xmltree import Overlay
 from linkwright.xmltree.positions import start_tag_end
 
 _ENDINGS = (".urdf", ".xacro")
-_MAX_ROBOTS = 6
+_MAX_ROBOTS = 24
 _MAX_SECONDS = 0.5
 _KINDS = {"link": NameKind.LINK, "joint": NameKind.JOINT}
 _State = tuple[tuple[str, object], ...]
@@ -30,6 +30,8 @@ _State = tuple[tuple[str, object], ...]
 class _Robot:
     state: _State
     names: tuple[NameDefinition, ...]
+    texts: frozenset[str] = frozenset()
+    """The names of files in its elements, such as that of the parameters of controllers."""
 
 
 _robots: WeakKeyDictionary[Workspace, dict[Path, _Robot]] = WeakKeyDictionary()
@@ -47,14 +49,17 @@ def robot_names(project: Workspace, texts: Mapping[Path, str], file: Path) -> li
         file: a file of parameters, a configuration or a description.
     """
     known = _robots.setdefault(project, {})
-    found: dict[tuple[NameKind, str], NameDefinition] = {}
+    robots: list[_Robot] = []
     begin = time.monotonic()
     for entry in _likely_robots(project, texts, file):
         robot = known.get(entry)
         if robot is None or robot.state != _state((path for path, _ in robot.state), texts):
             if time.monotonic() - begin > _MAX_SECONDS:
-                break  # the next request goes on
+                break  # the next request continues
             robot = known[entry] = _read(project, texts, entry)
+        robots.append(robot)
+    found: dict[tuple[NameKind, str], NameDefinition] = {}
+    for robot in sorted(robots, key=lambda robot: file.name not in robot.texts):
         for name in robot.names:
             found.setdefault((name.kind, name.name), name)
     return list(found.values())
@@ -97,7 +102,10 @@ def _read(project: Workspace, texts: Mapping[Path, str], entry: Path) -> _Robot:
             start = element.offset + (written.start if written else 0)
             detail = element.attributes.get("type", "")
             names.append(NameDefinition(kind, name, real(element.source.name), start, detail))
-    return _Robot(_state(map(str, expansion.dependencies), texts), tuple(names))
+    contents = (element.text() for element in expansion.document.root.walk())
+    files = (content.strip().rpartition("/")[2] for content in contents)
+    mentioned = frozenset(file for file in files if file.endswith((".yaml", ".yml")))
+    return _Robot(_state(map(str, expansion.dependencies), texts), tuple(names), mentioned)
 
 
 def _state(files: Iterator[str] | list[str] | map[str], texts: Mapping[Path, str]) -> _State:

@@ -34,6 +34,17 @@ _USUAL = ("RobotModel", "TF", "LaserScan", "Map", "PointCloud2", "Image", "Path"
 """The displays that most configurations have, offered first."""
 _FRAMES = ("map", "odom", "world")
 _OPTIONS = "Global Options"
+_TOPICS = {
+    "nav_msgs/msg/OccupancyGrid": "/map",
+    "nav_msgs/msg/Odometry": "/odom",
+    "nav_msgs/msg/Path": "/plan",
+    "sensor_msgs/msg/Image": "/camera/image_raw",
+    "sensor_msgs/msg/LaserScan": "/scan",
+    "sensor_msgs/msg/PointCloud2": "/points",
+    "std_msgs/msg/String": "/robot_description",
+    "visualization_msgs/msg/MarkerArray": "/visualization_marker_array",
+}
+"""The usual topic of some message types."""
 _TOPIC = re.compile(r"(?m)^\s*(?:Value|Topic|[\w ]*Topic): (/[\w/]+)\s*$")
 _COMMON: Schema = (
     PropertySpec("Class", "string", "", "The class."),
@@ -45,6 +56,38 @@ _TOP: Schema = (
     PropertySpec("Panels", "group", description="The panels of the window."),
     PropertySpec("Visualization Manager", "group", description="The displays, tools, views and options."),
     PropertySpec("Window Geometry", "group", description="The size and layout of the window."),
+)
+_WINDOW: Schema = (
+    PropertySpec("Height", "int", 846, "The height of the window, in pixels."),
+    PropertySpec("Width", "int", 1200, "The width of the window, in pixels."),
+    PropertySpec("X", "int", 0, "The left edge of the window, in pixels."),
+    PropertySpec("Y", "int", 0, "The upper edge of the window, in pixels."),
+    PropertySpec("Hide Left Dock", "bool", False, "Whether the panels on the left are hidden."),
+    PropertySpec("Hide Right Dock", "bool", False, "Whether the panels on the right are hidden."),
+    PropertySpec("QMainWindow State", "string", "", "The layout of the panels, as Qt writes it."),
+    PropertySpec("collapsed", "bool", False, "Whether the panel is hidden."),
+)
+_PANEL: Schema = (
+    PropertySpec("Class", "string", "", "The class."),
+    PropertySpec("Name", "string", "", "The name of the panel."),
+    PropertySpec("Help Height", "int", 78, "The height of the help, in pixels."),
+    PropertySpec("Property Tree Widget", "group", description="The rows that are open, and the width of the columns."),
+    PropertySpec("Tree Height", "int", 549, "The height of the tree, in pixels."),
+    PropertySpec("Expanded", "group", description="The open rows."),
+    PropertySpec("Splitter Ratio", "float", 0.5, "The width of the first column, from 0 to 1."),
+    PropertySpec("Experimental", "bool", False, "Whether the panel shows experimental settings."),
+    PropertySpec("SyncMode", "int", 0, "How displays are synchronized: 0 for off, 1 for exact, 2 for approximate."),
+    PropertySpec("SyncSource", "string", "", "The display that the time follows."),
+)
+_LINK: Schema = (
+    PropertySpec("Alpha", "float", 1.0, "Opacity: 0 is invisible.", minimum=0.0, maximum=1.0),
+    PropertySpec("Show Axes", "bool", False, "Draw the axes of the link's frame."),
+    PropertySpec("Show Trail", "bool", False, "Draw the way of the link's frame."),
+    PropertySpec("Value", "bool", True, "Whether it is drawn."),
+)
+_OF_FRAMES: Schema = (
+    PropertySpec("Frames", "group", description="Which frames are drawn."),
+    PropertySpec("Tree", "group", description="The tree of the frames."),
 )
 _MANAGER: Schema = (
     PropertySpec("Displays", "group", description="The displays, from the first to the last that is drawn."),
@@ -58,7 +101,7 @@ _MANAGER: Schema = (
 
 @dataclass(frozen=True, slots=True)
 class _Owner:
-    """What a place of a configuration belongs to.
+    """The display, tool, view or group of options that a place of a configuration belongs to.
 
     Attributes:
         role: ``Displays``, ``Tools``, ``Views``, ``Panels`` or ``Global Options``; empty for the frame of the file.
@@ -79,8 +122,12 @@ class _Owner:
     @property
     def schema(self) -> Schema:
         """The properties at the place."""
+        if self.role == "Displays" and self.keys[-2:-1] in (("Links",), ("Frames",)):
+            return _LINK if self.keys[-2] == "Links" else _LINK[-1:]
+        if self.role == "Displays" and self.keys[-1:] == ("Frames",):
+            return (PropertySpec("All Enabled", "bool", True, "Whether all frames are drawn."),)
         specs = self._specs
-        for key in self.keys:
+        for key in self.keys if self.role != "Panels" else ():
             specs = next((spec.children for spec in specs if spec.name == key), ())
         return specs
 
@@ -94,24 +141,27 @@ class _Owner:
             tool = TOOL_KINDS.get(self.class_name)
             return (_COMMON[0], *(() if tool is None else tool.schema))
         if self.role == "Views":
-            return (*_COMMON[:2], *VIEW_SCHEMAS.get(self.class_name, ()))
+            value = PropertySpec("Value", "string", "", "The class and the package of the view.")
+            return (*_COMMON[:2], *VIEW_SCHEMAS.get(self.class_name, ()), value)
         if self.role == "Panels":
-            return _COMMON[:2]
+            return _PANEL
         if self.entry.parent is None:
             return _TOP
         if self.entry.key == "Visualization Manager":
             return _MANAGER
+        if "Window Geometry" in self.entry.path:
+            return _WINDOW
         return (PropertySpec("Current", "group"), PropertySpec("Saved", "group")) if self.entry.key == "Views" else ()
 
     def spec(self, key: str) -> PropertySpec | None:
         """Return the property with a key at the place; the value of a property with children has the key ``Value``."""
-        if key == "Value" and self.keys:
+        if key == "Value" and self.keys and self.keys[-2:-1] not in (("Links",), ("Frames",)):
             return _Owner(self.role, self.entry, self.keys[:-1]).spec(self.keys[-1])
         return next((spec for spec in self.schema if spec.name == key), None)
 
 
 def _owner_of(entry: YamlEntry) -> _Owner:
-    """Return what the content of an entry belongs to."""
+    """Return the display, tool, view or group that the content of an entry belongs to."""
     keys: list[str] = []
     current = entry
     while current.parent is not None:
@@ -140,7 +190,7 @@ def _display(name: str) -> Any:
 
 def _display_schema(name: str) -> Schema:
     schema: Schema = getattr(_display(name), "SCHEMA", ())
-    return schema
+    return (*schema, *_OF_FRAMES) if name == "rviz_default_plugins/TF" else schema
 
 
 # --- completions ------------------------------------------------------------------------------------------------------
@@ -213,6 +263,8 @@ def _values(document: Document, cursor: YamlCursor) -> Iterator[Completion]:
         for name, purpose in _classes(owner):
             yield Completion(name, ItemKind.VALUE, cursor.start, "", purpose)
         return
+    if key == "Name":
+        yield Completion(_usual_name(owner), ItemKind.VALUE, cursor.start)
     spec = owner.spec(key)
     if spec is None:
         return
@@ -226,11 +278,20 @@ def _values(document: Document, cursor: YamlCursor) -> Iterator[Completion]:
     if spec.kind == "frame":
         yield from _frames(document, cursor.start, with_fixed=owner.role != _OPTIONS)
     elif spec.kind == "topic" or spec.name.endswith("Topic"):
-        topics = dict.fromkeys((*([default] if default else []), *_topics(document)))
-        for topic in topics:
+        message = getattr(_display(owner.class_name), "MESSAGE", "")
+        _, _, typed = word_at(document.text, cursor)
+        others = (topic for topic in _topics(document) if topic != typed or typed == _TOPICS.get(message))
+        for topic in dict.fromkeys((*filter(None, (_TOPICS.get(message), default)), *others)):
             yield Completion(topic, ItemKind.NAME, cursor.start)
     elif default and not words:
         yield Completion(default, ItemKind.VALUE, cursor.start, localized(phrase("default")))
+
+
+def _usual_name(owner: _Owner) -> str:
+    """Return the name that RViz gives to a display, tool, view or panel."""
+    if owner.role == "Views":
+        return "Current View" if owner.entry.key == "Current" else owner.class_name.rpartition("/")[2]
+    return owner.class_name.rpartition("/")[2] or ("root" if owner.role == "" else "")
 
 
 def _classes(owner: _Owner) -> Iterator[tuple[str, str]]:
@@ -283,7 +344,10 @@ def explain_rviz(document: Document, offset: int) -> Explanation | None:
     if not word:
         return None
     if cursor.place is Place.KEY:
-        text = _explained(_owner_of(cursor.within), word)
+        owner = _owner_of(cursor.within)
+        text = _explained(owner, word)
+        if not text and {"Links", "Frames", "Tree"} & set(owner.keys):
+            text = part_explanation(document, word, (NameKind.LINK,))
     else:
         parent = cursor.within.parent
         owner = _owner_of(parent if parent is not None else cursor.within)

@@ -55,7 +55,9 @@ def by_typed(items: Iterable[Completion], typed: str) -> list[Completion]:
 
     def rank(item: Completion) -> int:
         label = item.label.lower()
-        return 0 if label.startswith(low) else 1 if low in label else 2
+        return (
+            0 if label.startswith(low) or label.partition("/")[2].startswith(low or "\0") else 1 if low in label else 2
+        )
 
     return sorted(unique.values(), key=rank)
 

@@ -114,7 +114,7 @@ class TableEntry:
     """A parameter of a table, as `entries` describes it.
 
     Attributes:
-        name: the name with dots; ``*`` stands for each of the names in another parameter, as in ``gains.*.p``.
+        name: the name with dots; ``*`` represents the names in another parameter, as in ``gains.*.p``.
         kind: the type.
         default: the default value; None if it has none.
         description: the purpose, with its unit; empty if the table does not tell it.
