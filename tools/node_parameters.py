@@ -16,6 +16,7 @@ import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from importlib import import_module
+from itertools import product
 from pathlib import Path
 from typing import Any
 from unittest import mock
@@ -25,7 +26,7 @@ from linkwright.graph import Graph
 from linkwright.graph.parameters.node_parameters import NodeParameters
 from linkwright.graph.parameters.parameter import ParameterRules, ParameterType
 from linkwright.graph.parameters.store import ParameterStore
-from linkwright.navigation.nodes import behavior_server, costmap_layers, followers, planner_server
+from linkwright.navigation.nodes import behavior_server, collision_zones, costmap_layers, followers, planner_server
 from linkwright.nodes import parameter_tables
 from linkwright.nodes.options import EXECUTABLES, NodeOptions
 
@@ -37,7 +38,7 @@ tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "toml
 
 _FOLLOWERS = (followers.DWB, followers.MPPI, followers.PURE_PURSUIT, followers.ROTATION_SHIM)
 _SENSOR = re.compile(r"^(odom|imu|pose|twist)\d")
-_PLUGIN, _ITEM = "THE_PLUGIN", "THE_ITEM"
+_PLUGIN, _ITEM, _PART = "THE_PLUGIN", "THE_ITEM", "THE_PART"
 _ROBOT = '<robot name="r"><link name="base_link"/></robot>'
 _LEFT_OUT = ("cam2image", "teleop_twist_keyboard", "rmw_zenohd", "_node.py", "static_transform_publisher")
 _PACKAGES_LEFT_OUT = ("gazebo_ros", "ros_gz_", "ros_ign_", "audio_", "demo_nodes", "tf2_tools", "my_robot_voice")
@@ -60,6 +61,22 @@ _NEEDED: Mapping[str, dict[str, Any]] = {
     },
 }
 """The parameters without which a node does not start, by executable."""
+
+
+def _zones() -> Iterator[dict[str, Any]]:
+    """Yield the parameters of a collision monitor with one zone or one sensor, for each of their types."""
+    points = "[[0.1, 0.1], [0.1, -0.1], [-0.1, 0.0]]"
+    for kind, action in product(collision_zones._TYPES, collision_zones._ACTIONS):
+        zone = {"type": kind, "action_type": action, "points": points, "radius": 0.1, "visualize": True}
+        zone |= {"velocity_polygons": [_PART]} if kind == "velocity_polygon" else {}
+        zone |= {f"{_PART}.points": points}
+        yield {"polygons": [_ITEM], **{f"{_ITEM}.{name}": value for name, value in zone.items()}}
+    for kind in ("scan", "pointcloud", "range"):
+        yield {"observation_sources": [_ITEM], f"{_ITEM}.type": kind}
+
+
+_VARIANTS: Mapping[str, list[dict[str, Any]]] = {"collision_monitor": [*_zones()]}
+"""Several sets of parameters with which a node is started, by executable."""
 
 
 def _layer_types() -> list[str]:
@@ -125,9 +142,12 @@ def _recording(found: Declarations, given: Mapping[str, Any]) -> Iterator[None]:
         owner = owners[id(store)]
         if not name.startswith(_EVERYWHERE):
             record = _record(default, descriptor, tables.get((owner, name)))
-            if name in given and record.get("default") == given[name]:
+            if record.get("default") == _ITEM or (name in given and record.get("default") == given[name]):
                 del record["default"]
-            found.setdefault(owner, {}).setdefault(name, record)
+            listing = [key for key, value in given.items() if value == [_ITEM]]
+            known = found.setdefault(owner, {}).setdefault(name, record)
+            if name.startswith(f"{_ITEM}.") and listing:
+                known["keys"] = sorted({*known.get("keys", ()), *listing})
     for (owner, name), entry in tables.items():  # those of one distribution, which are not declared in the other one
         if "*" not in name:
             found.setdefault(owner, {}).setdefault(name, _record(entry.default, None, entry))
@@ -140,6 +160,8 @@ def _record(default: Any, descriptor: Any, entry: parameter_tables.TableEntry | 
         kind = ParameterType(descriptor.type)
     if entry is not None:
         kind = entry.kind
+    if default == []:
+        kind = ParameterType.STRING_ARRAY  # an empty list tells no type
     record: dict[str, Any] = {"type": kind.name.lower().replace("not_set", "")}
     if default is not None and not isinstance(default, ParameterType):
         record["default"] = _plain(default)
@@ -179,9 +201,9 @@ def _nodes() -> Declarations:
     found: Declarations = {}
     for package, executable in EXECUTABLES:
         if not executable.endswith(_LEFT_OUT) and not package.startswith(_PACKAGES_LEFT_OUT):
-            given = _NEEDED.get(executable, {})
-            with _recording(found, given):
-                _start((package, executable), given, ParameterRules())
+            for given in _VARIANTS.get(executable) or [_NEEDED.get(executable, {})]:
+                with _recording(found, given):
+                    _start((package, executable), given, ParameterRules())
     return {node: _without_plugins(found[node]) for node in sorted(found) if found[node]}
 
 
@@ -208,9 +230,11 @@ def _plugin_tables() -> Iterator[tuple[str, dict[str, Any]]]:
         with _recording(found, given):
             _start((package, executable), {} if node != executable else given, others)
         own = found[node]
-        names_of_plugin = sorted(name for name in own if name.startswith(f"{_PLUGIN}."))
+        names_of_plugin = [name for name in own if name.startswith(f"{_PLUGIN}.")]
         parameters = {name.removeprefix(f"{_PLUGIN}.").replace(_ITEM, "*"): own[name] for name in names_of_plugin}
         parameters.pop("plugin", None)
+        for name, record in parameters.items():
+            record |= {"keys": ["observation_sources"]} if "*" in name else {}
         yield kind, {"node": node, "listed": listed, "parameters": parameters}
 
 
@@ -224,15 +248,22 @@ def _describe(owner: str, parameters: dict[str, dict[str, Any]], texts: Mapping[
     }
     package, _, name = owner.partition("/")
     tables = [texts.get(owner, {}), texts.get(package, {}).get(name, {})]
+    written = [*tables, *([texts["FOLLOWER"]] if owner == followers.MPPI else [])]
     tables += [texts[group] for group, applies in groups.items() if applies]
-    for table in [*tables[:1], *([texts["FOLLOWER"]] if owner == followers.MPPI else [])]:
+    for table in written:
         parameters |= {name: entry for name, entry in table.items() if isinstance(entry, dict) and "type" in entry}
     for parameter, record in parameters.items():
-        key = _SENSOR.sub("SENSOR", parameter) if groups["ROBOT_LOCALIZATION"] else parameter.replace(_ITEM, "*")
+        key = (
+            _SENSOR.sub("SENSOR", parameter)
+            if groups["ROBOT_LOCALIZATION"]
+            else parameter.replace(_ITEM, "*").replace(_PART, "*")
+        )
         key = "plugin" if key.endswith(".plugin") else key
         text = next((table[key] for table in [*tables, texts["any"]] if isinstance(table.get(key), str)), "")
         if text and "description" not in record:
             record["description"] = text
+        choices = next((table[key] for table in tables if isinstance(table.get(key), dict)), {})
+        record |= choices if "type" not in choices else {}
 
 
 async def _table() -> str:
@@ -245,7 +276,7 @@ async def _table() -> str:
     for owner, plugin in plugins.items():
         _describe(owner, plugin["parameters"], texts)
     content = {"nodes": nodes, "plugins": plugins}
-    return json.dumps(content, indent=1, ensure_ascii=False, sort_keys=True).replace(_ITEM, "*") + "\n"
+    return json.dumps(content, indent=1, ensure_ascii=False).replace(_ITEM, "*").replace(_PART, "*") + "\n"
 
 
 def main(words: list[str]) -> int:

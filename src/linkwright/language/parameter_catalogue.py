@@ -54,6 +54,12 @@ class ParameterInfo:
         own, parts = self.name.split("."), name.split(".")
         return len(own) == len(parts) and all(mark in ("*", part) for mark, part in zip(own, parts, strict=True))
 
+    def rest_below(self, name: str) -> str:
+        """Return the rest of the parameter's name below a group; empty if the group does not contain it."""
+        own, group = self.name.split("."), name.split(".")
+        is_inside = len(own) > len(group) and all(mark in ("*", part) for mark, part in zip(own, group, strict=False))
+        return ".".join(own[len(group) :]) if is_inside else ""
+
     @property
     def written_default(self) -> str:
         """The default as YAML has it; empty if there is none."""
@@ -105,7 +111,8 @@ def _infos(table: Mapping[str, Mapping[str, Any]], owner: str) -> tuple[Paramete
             entry.get("default"),
             entry.get("description", ""),
             tuple(entry.get("choices", ())),
-            owner=owner,
+            tuple(entry.get("keys", ())),
+            owner,
         )
         for name, entry in table.items()
     )

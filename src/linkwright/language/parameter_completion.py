@@ -20,9 +20,16 @@ from linkwright.language.parameter_catalogue import (
     plugin_types,
     plugins,
 )
-from linkwright.language.parameter_sections import PARAMETERS, Section, declared_controllers, section_at, sections
+from linkwright.language.parameter_sections import (
+    PARAMETERS,
+    Section,
+    declared_controllers,
+    node_of,
+    section_at,
+    sections,
+)
 from linkwright.language.robot_names import robot_names
-from linkwright.language.yaml_outline import Place, YamlCursor, YamlOutline
+from linkwright.language.yaml_outline import Place, YamlCursor, YamlEntry, YamlOutline
 from linkwright.language.yaml_symbols import by_typed, has_colon, snippet_text
 
 INTERFACES = ("position", "velocity", "effort", "acceleration")
@@ -36,6 +43,11 @@ _USUAL_CONTROLLERS = (
 )
 _NUMBERED = re.compile(r"[a-z]+\d+(_|$)")
 """A parameter of one of several sensors, such as ``odom0_config``."""
+_CAPITALS = re.compile(r":[ \t]+(?:True|False)\b")
+_SMALL = re.compile(r":[ \t]+(?:true|false)\b")
+_COLONS = re.compile(r"plugin:[ \t]+[\"']?nav2_(?!costmap_2d)\w+::|plugin:[ \t]+[\"']?dwb_core::")
+_MAX_FILES = 40
+_SENSOR_TOPICS = ("/scan", "/points")
 _COSTMAPS = ("local_costmap", "global_costmap")
 
 
@@ -99,6 +111,7 @@ def _keys(document: Document, section: Section, cursor: YamlCursor, colon: str) 
     if section.is_manager:
         yield from _manager_keys(section, cursor, colon)
     place = section.prefix.split(".") if section.prefix else []
+    yield from _plugin_keys(section, cursor, colon, taken)
     groups: dict[str, list[str]] = {}
     dotted: list[Completion] = []
     for parameter in sorted(section.parameters(), key=lambda parameter: bool(_NUMBERED.match(parameter.name))):
@@ -115,6 +128,7 @@ def _keys(document: Document, section: Section, cursor: YamlCursor, colon: str) 
                 name = ".".join([first, *rest[1:]])
                 if "*" not in name and name not in taken:
                     dotted.append(_parameter_key(cursor, name, parameter, colon))
+    yield from _keys_elsewhere(document, section, cursor, colon, taken)
     uses_dots = any("." in name for name in taken)
     yield from dotted if uses_dots else ()
     for name, inside in groups.items():
@@ -122,6 +136,40 @@ def _keys(document: Document, section: Section, cursor: YamlCursor, colon: str) 
             shown = ", ".join(f"`{part}`" for part in dict.fromkeys(inside))
             yield Completion(name, ItemKind.NAME, cursor.start, "", shown, colon and f"{snippet_text(name)}:\n  $0")
     yield from dotted
+
+
+def _keys_elsewhere(
+    document: Document, section: Section, cursor: YamlCursor, colon: str, taken: set[str]
+) -> Iterator[Completion]:
+    """Yield the keys that other parameter files of the package have at this place, for a node that is not known."""
+    if not section.may_be_controller or section.node in section.controllers:
+        return
+    for file in [*document.project.configuration_files(document.file)][:_MAX_FILES]:
+        text = document.other(file) if file != document.file and file.name.endswith((".yaml", ".yml")) else ""
+        for entry in sections(YamlOutline(text)) if f"{section.node}:" in text else ():
+            below: YamlEntry | None = entry if node_of(entry) == section.node else None
+            for key in section.prefix.split(".") if section.prefix else ():
+                below = None if below is None else below.child(key)
+            for child in () if below is None else below.children:
+                if child.key and child.key not in taken:
+                    detail = f"{file.name}: {child.value[:40]}" if child.value else file.name
+                    end = ":\n  $0" if child.children else ": $0"
+                    yield _key(cursor, child.key, detail, "", colon and snippet_text(child.key) + end)
+
+
+def _plugin_keys(section: Section, cursor: YamlCursor, colon: str, taken: set[str]) -> Iterator[Completion]:
+    """Yield the plugins that a list names and that have no parameters yet, or the key ``plugin`` of such a plugin."""
+    given = section.given()
+    for listed in dict.fromkeys(plugin.listed for plugin in plugins().values()):
+        entry = given.get(listed)
+        names = [] if entry is None else [text for text, _ in entry.items()] or [entry.scalar]
+        if section.prefix in names and "plugin" not in taken:
+            text = phrase("the type of the plugin")
+            yield _key(cursor, "plugin", "string", text, colon and "plugin: $0")
+        if not section.prefix and (not section.node or plugin_types(section.node, listed)):
+            for name in names:
+                if name and name not in taken:
+                    yield _key(cursor, name, listed, "", colon and f"{snippet_text(name)}:\n  plugin: $0")
 
 
 def _parameter_key(cursor: YamlCursor, label: str, parameter: ParameterInfo, colon: str) -> Completion:
@@ -159,7 +207,7 @@ def _names_for(document: Document, section: Section, parameter: ParameterInfo) -
         name
         for key in parameter.keys
         if key in given
-        for name in ([text for text, _ in given[key].items()] or [given[key].scalar])
+        for name in ([text for text, _ in given[key].items()] or given[key].scalar.split())
         if name
     ]
     if names or not parameter.keys or not any(kinds_of_parameter(key) for key in parameter.keys):
@@ -208,11 +256,14 @@ def _values(document: Document, section: Section, cursor: YamlCursor) -> Iterato
         for kind in _resembling(controller_types(), name.rpartition(".")[0] or section.node):
             yield item(kind, description=controller_purpose(kind) or "")
     elif last in ("plugin", "primary_controller"):
+        uses_colons = _COLONS.search(document.text) is not None
         for kind in _plugin_types(section, name.rpartition(".")[0], last):
-            yield item(kind)
+            yield item(kind.replace("/", "::") if uses_colons else kind)
     elif parameter is not None and parameter.type == "bool":
+        counts = [len(pattern.findall(document.text)) for pattern in (_SMALL, _CAPITALS)]
+        is_capital = cursor.typed[:1].isupper() if cursor.typed else counts[1] > counts[0]
         for word in ("true", "false"):
-            yield item(word, detail=_default_mark(parameter, word))
+            yield item(word.title() if is_capital else word, detail=_default_mark(parameter, word))
     elif parameter is not None and parameter.choices:
         for word in parameter.choices:
             yield item(word, detail=_default_mark(parameter, word))
@@ -229,6 +280,9 @@ def _values(document: Document, section: Section, cursor: YamlCursor) -> Iterato
         for label, detail in _robot_values(document, last, default):
             if label not in taken:
                 yield item(label, ItemKind.NAME, detail)
+    if last == "topic" and name.count("."):
+        for topic in _SENSOR_TOPICS:
+            yield item(topic)
     if parameter is not None and not cursor.in_list and parameter.written_default and not parameter.choices:
         default = parameter.written_default
         if parameter.type != "bool":

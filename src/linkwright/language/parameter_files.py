@@ -92,11 +92,11 @@ def _explained_key(document: Document, outline: YamlOutline, entry: YamlEntry) -
     plugin = entry.child("plugin")
     if plugin is not None:
         return f"**{entry.key}** " + _explained_plugin(plugin.scalar)
-    inside = [known for known in section.parameters() if known.name.startswith(f"{name}.")]
+    inside = {shown: None for known in section.parameters() if (shown := known.rest_below(name))}
     facts = part_explanation(document, entry.key, (NameKind.JOINT, NameKind.LINK))
     if facts:
         return facts
-    return f"**{name}**: " + ", ".join(f"`{known.name.removeprefix(name)[1:]}`" for known in inside) if inside else ""
+    return f"**{name}**: " + ", ".join(f"`{shown}`" for shown in inside) if inside else ""
 
 
 def _explained_node(outline: YamlOutline, entry: YamlEntry) -> str:

@@ -67,8 +67,8 @@ class Section:
         else:
             owners = [self.node] if node_parameters(self.node) else owners_of(given)[:1]
             own = [parameter for owner in owners for parameter in node_parameters(owner)]
-            if not owners and not self.node:
-                own = [_EVERY_NODE, *_common_parameters()]
+            if not self.node:
+                own += [_EVERY_NODE, *_common_parameters()]
         if self.may_be_controller:
             own.append(_TYPE)
         return [*own, *self._of_plugins(given), _EVERY_NODE]

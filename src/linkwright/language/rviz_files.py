@@ -66,6 +66,7 @@ _WINDOW: Schema = (
     PropertySpec("Hide Right Dock", "bool", False, "Whether the panels on the right are hidden."),
     PropertySpec("QMainWindow State", "string", "", "The layout of the panels, as Qt writes it."),
     PropertySpec("collapsed", "bool", False, "Whether the panel is hidden."),
+    *(PropertySpec(name, "group", description="Whether the panel is hidden.") for name in _PANELS),
 )
 _PANEL: Schema = (
     PropertySpec("Class", "string", "", "The class."),
