@@ -37,6 +37,8 @@ LIST = ROOT / "src" / "linkwright" / "language" / "node_parameters.json"
 tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
 
 _FOLLOWERS = (followers.DWB, followers.MPPI, followers.PURE_PURSUIT, followers.ROTATION_SHIM)
+_RECORD = re.compile(r"\{\s+([^{}]*?)\s+\}")
+"""An object in the text that contains no other one; each parameter is one line."""
 _SENSOR = re.compile(r"^(odom|imu|pose|twist)\d")
 _PLUGIN, _ITEM, _PART = "THE_PLUGIN", "THE_ITEM", "THE_PART"
 _ROBOT = '<robot name="r"><link name="base_link"/></robot>'
@@ -276,7 +278,8 @@ async def _table() -> str:
     for owner, plugin in plugins.items():
         _describe(owner, plugin["parameters"], texts)
     content = {"nodes": nodes, "plugins": plugins}
-    return json.dumps(content, indent=1, ensure_ascii=False).replace(_ITEM, "*").replace(_PART, "*") + "\n"
+    text = json.dumps(content, indent=1, ensure_ascii=False).replace(_ITEM, "*").replace(_PART, "*")
+    return _RECORD.sub(lambda found: "{" + " ".join(found[1].split()) + "}", text) + "\n"
 
 
 def main(words: list[str]) -> int:
