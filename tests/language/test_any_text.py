@@ -80,8 +80,41 @@ SEMANTICS = """<robot name="mbot"><group name="a"><chain base_link="b" tip_link=
 <group_state name="s" group="a"><joint name="j" value="0"/></group_state></robot>"""
 PACKAGE = """<package format="3"><name>a</name><license file="LICENSE">MIT</license>
 <exec_depend condition="x">my_robot_description</exec_depend><export><build_type>ament_cmake</build_type></export>"""
+PARAMETERS = """controller_manager:
+  ros__parameters:
+    drive: {type: diff_drive_controller/DiffDriveController}
+drive:
+  ros__parameters:
+    left_wheel_names: ["left_wheel_joint", # two
+      'b']
+    linear.x: {max_velocity: 1.0}
+    joints:
+    - a
+/**/local_costmap:
+  local_costmap:
+    ros__parameters: # of the map
+      layer:
+        plugin: "nav2_costmap_2d::ObstacleLayer"
+        note: |
+          a: b
+"""
+VIEWER = """Visualization Manager:
+  Displays:
+    - Alpha: 0.5
+      Class: rviz_default_plugins/LaserScan
+      Topic: {Depth: 5}
+    - Class: rviz_default_plugins/TF
+      Frames:
+        base_link: {Value: true}
+  Global Options:
+    Fixed Frame: base_link
+  Views:
+    Current:
+      Class: rviz_default_plugins/Orbit
+"""
 OWN = [("launch/a.launch.xml", LAUNCH), ("launch/a.launch.py", PYTHON), ("srv/A.srv", MESSAGE)]
 OWN += [("config/a.srdf", SEMANTICS), ("config/a.srdf.xacro", SEMANTICS), ("package.xml", PACKAGE)]
+OWN += [("config/a.yaml", PARAMETERS), ("rviz/a.rviz", VIEWER)]
 MARKS = st.text("<>/=\"' ${}()[],.:#\\n\n机a-@", max_size=8)
 
 

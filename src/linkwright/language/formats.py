@@ -9,9 +9,19 @@ from linkwright.language.interfaces import INTERFACES
 from linkwright.language.launch_python import LAUNCH_PYTHON
 from linkwright.language.launch_xml import LAUNCH_XML
 from linkwright.language.manifest import PACKAGE_XML
+from linkwright.language.parameter_files import PARAMETER_FILES
+from linkwright.language.rviz_files import RVIZ_FILES
 from linkwright.language.srdf import SRDF_FILES
 
-FORMATS: tuple[Format, ...] = (LAUNCH_XML, LAUNCH_PYTHON, INTERFACES, PACKAGE_XML, SRDF_FILES)
+FORMATS: tuple[Format, ...] = (
+    LAUNCH_XML,
+    LAUNCH_PYTHON,
+    INTERFACES,
+    PACKAGE_XML,
+    SRDF_FILES,
+    PARAMETER_FILES,
+    RVIZ_FILES,
+)
 """The formats, the first that covers a file decides."""
 
 

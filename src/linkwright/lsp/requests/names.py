@@ -175,6 +175,8 @@ def add_requests(server: LinkwrightServer) -> None:
         takes_snippets = bool(item and item.snippet_support)
         own = await server.formatted(asked.text_document)
         if own is not None:
+            await server.when_indexed()
+            server.check_unchanged(own.document.file, own.positions)
             found = own.format.complete(own.document, own.positions.offset(asked.position))
             return items(found, own.positions, asked.position, takes_snippets=takes_snippets)
         path, positions = server.text(asked.text_document)

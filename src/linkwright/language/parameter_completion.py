@@ -1,0 +1,278 @@
+"""Completions in ROS 2 parameter files, also those of ros2_control: nodes, parameters, types, joints and frames."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.diagnostics.translation import localized
+from linkwright.language.completion import Completion, ItemKind
+from linkwright.language.definitions import NameKind
+from linkwright.language.format import Document
+from linkwright.language.mentions import kinds_of_key
+from linkwright.language.parameter_catalogue import (
+    ParameterInfo,
+    controller_purpose,
+    controller_types,
+    node_names,
+    node_parameters,
+    plugin_types,
+    plugins,
+)
+from linkwright.language.parameter_sections import PARAMETERS, Section, declared_controllers, section_at, sections
+from linkwright.language.robot_names import robot_names
+from linkwright.language.yaml_outline import Place, YamlCursor, YamlOutline
+from linkwright.language.yaml_symbols import by_typed, has_colon, snippet_text
+
+INTERFACES = ("position", "velocity", "effort", "acceleration")
+_USUAL_FRAMES = ("map", "odom", "base_link", "base_footprint")
+"""Frames of mobile platforms (REP 105)."""
+_INTERFACE = re.compile(r"(^|_)(command_|state_)?interfaces?(_names?)?$")
+_USUAL_CONTROLLERS = (
+    "joint_state_broadcaster/JointStateBroadcaster",
+    "joint_trajectory_controller/JointTrajectoryController",
+    "diff_drive_controller/DiffDriveController",
+)
+_COSTMAPS = ("local_costmap", "global_costmap")
+
+
+def complete_parameters(document: Document, offset: int) -> list[Completion]:
+    """Return the completions at an offset of a parameter file, the likeliest first."""
+    outline = YamlOutline(document.text)
+    cursor = outline.cursor(offset)
+    if cursor.place is Place.NOTHING:
+        return []
+    section = section_at(outline, cursor.within)
+    items: Iterable[Completion]
+    if cursor.place is Place.KEY:
+        colon = "" if has_colon(document.text, offset) else ":"
+        items = _node_keys(outline, cursor, colon) if section is None else _keys(document, section, cursor, colon)
+    else:
+        items = () if section is None else _values(document, section, cursor)
+    return by_typed(items, cursor.typed)
+
+
+# --- keys -------------------------------------------------------------------------------------------------------------
+
+
+def _node_keys(outline: YamlOutline, cursor: YamlCursor, colon: str) -> Iterator[Completion]:
+    """Yield the keys outside of ``ros__parameters``: nodes and that key itself."""
+    others = [child for child in cursor.within.children if child is not cursor.entry]
+    taken = {child.key for child in others}
+    is_top = cursor.within.parent is None
+    if is_top and others and not any(sections(outline)):
+        return  # another kind of file
+    body, above = f"{PARAMETERS}:\n    $0", cursor.within.key
+    if not is_top:
+        if above in _COSTMAPS and len(cursor.within.path) == 1 and not taken:
+            yield _key(cursor, above, "node", "", colon and f"{above}:\n  {body}")
+        if PARAMETERS not in taken:
+            text = phrase("the parameters of the node")
+            yield _key(cursor, PARAMETERS, "", text, colon and f"{PARAMETERS}:\n  $0")
+        if "ros__parameters" in taken:
+            return
+    if is_top and "/**" not in taken:
+        text = phrase("parameters of all nodes")
+        yield _key(cursor, "/**", "", text, colon and f"/**:\n  {body}")
+    for name, kind in declared_controllers(outline).items():
+        if name not in taken:
+            yield _key(cursor, name, kind, controller_purpose(kind) or "", colon and f"{name}:\n  {body}")
+    for name in node_names():
+        if name not in taken:
+            yield _key(cursor, name, "node", _names_of(node_parameters(name)), colon and f"{name}:\n  {body}")
+
+
+def _key(cursor: YamlCursor, label: str, detail: str, description: str | Phrase, snippet: str) -> Completion:
+    return Completion(label, ItemKind.ATTRIBUTE, cursor.start, detail, description, snippet)
+
+
+def _names_of(parameters: Iterable[ParameterInfo]) -> str:
+    return ", ".join(f"`{parameter.name}`" for parameter in parameters)
+
+
+def _keys(document: Document, section: Section, cursor: YamlCursor, colon: str) -> Iterator[Completion]:
+    """Yield the parameters and groups at a place in ``ros__parameters``."""
+    taken = {child.key for child in cursor.within.children if child is not cursor.entry}
+    if section.is_manager:
+        yield from _manager_keys(section, cursor, colon)
+    place = section.prefix.split(".") if section.prefix else []
+    groups: dict[str, list[str]] = {}
+    dotted: list[Completion] = []
+    for parameter in section.parameters():
+        parts = parameter.name.split(".")
+        if len(parts) <= len(place) or any(a not in ("*", b) for a, b in zip(parts, place, strict=False)):
+            continue
+        rest = parts[len(place) :]
+        firsts = _names_for(document, section, parameter) if rest[0] == "*" else [rest[0]]
+        for first in firsts:
+            if len(rest) == 1 and first not in taken:
+                yield _parameter_key(cursor, first, parameter, colon)
+            elif len(rest) > 1:
+                groups.setdefault(first, []).append(".".join(rest[1:]))
+                name = ".".join([first, *rest[1:]])
+                if "." in cursor.typed and "*" not in name and name not in taken:
+                    dotted.append(_parameter_key(cursor, name, parameter, colon))
+    yield from dotted
+    for name, inside in groups.items():
+        if name not in taken:
+            shown = ", ".join(f"`{part}`" for part in dict.fromkeys(inside))
+            yield Completion(name, ItemKind.NAME, cursor.start, "", shown, colon and f"{snippet_text(name)}:\n  $0")
+
+
+def _parameter_key(cursor: YamlCursor, label: str, parameter: ParameterInfo, colon: str) -> Completion:
+    default = parameter.written_default
+    detail = f"{parameter.type} = {default}" if default else parameter.type
+    value = f"${{1:{snippet_text(default)}}}" if default and len(default) <= 40 else "$0"
+    snippet = colon and f"{snippet_text(label)}: {value}"
+    return Completion(label, ItemKind.ATTRIBUTE, cursor.start, detail, described(parameter, label), snippet)
+
+
+def described(parameter: ParameterInfo, name: str = "") -> str:
+    """Return the description of a parameter in Markdown.
+
+    Args:
+        parameter: the parameter.
+        name: the name to show instead of that with ``*``.
+    """
+    default = parameter.written_default
+    head = f"**{name or parameter.name}**" + (f" `{parameter.type}`" if parameter.type else "")
+    lines = [head + (f" = `{default}`" if default else "")]
+    if parameter.description:
+        lines.append(parameter.description[:1].upper() + parameter.description[1:].rstrip("."))
+    if parameter.choices:
+        choices = ", ".join(f"`{choice}`" for choice in parameter.choices)
+        lines.append(localized(phrase("one of {choices}", choices=choices)))
+    if parameter.owner:
+        lines.append(f"*{parameter.owner}*")
+    return "\n\n".join(lines)
+
+
+def _names_for(document: Document, section: Section, parameter: ParameterInfo) -> list[str]:
+    """Return the names that may stand for ``*``: those in the parameters that list them, or all joints."""
+    given = section.given()
+    names = [
+        name
+        for key in parameter.keys
+        if key in given
+        for name in ([text for text, _ in given[key].items()] or [given[key].scalar])
+        if name
+    ]
+    if names or not parameter.keys or not any(kinds_of_parameter(key) for key in parameter.keys):
+        return names
+    found = robot_names(document.project, document.texts, document.file)
+    return [name.name for name in found if name.kind is NameKind.JOINT and name.detail != "fixed"]
+
+
+def _manager_keys(section: Section, cursor: YamlCursor, colon: str) -> Iterator[Completion]:
+    if section.prefix:
+        if "." not in section.prefix and cursor.within.child("type") in (None, cursor.entry):
+            text = phrase("the type of the controller")
+            yield _key(cursor, "type", "string", text, colon and "type: $0")
+        return
+    taken = {child.key for child in cursor.within.children}
+    for kind in sorted(controller_types(), key=lambda kind: kind not in _USUAL_CONTROLLERS):
+        package, _, name = kind.partition("/")
+        if package.endswith("controllers"):
+            package = re.sub(r"(?<!^)(?=[A-Z])", "_", name).lower()
+        if package not in taken:
+            snippet = colon and f"{package}:\n  type: {kind}"
+            yield _key(cursor, package, kind, controller_purpose(kind) or "", snippet)
+
+
+# --- values -----------------------------------------------------------------------------------------------------------
+
+
+def kinds_of_parameter(key: str) -> tuple[NameKind, ...]:
+    """Return the kinds of names that the values of a parameter are; empty if its name does not tell."""
+    last = key.rpartition(".")[2]
+    return (NameKind.JOINT,) if last == "dof_names" else kinds_of_key(last)
+
+
+def _values(document: Document, section: Section, cursor: YamlCursor) -> Iterator[Completion]:
+    name = section.prefix
+    last = name.rpartition(".")[2]
+    parameter = section.find(name)
+    is_array = parameter is not None and parameter.type.endswith("_array") and not cursor.in_list
+
+    def item(label: str, kind: ItemKind = ItemKind.VALUE, detail: str = "", description: str = "") -> Completion:
+        snippet = f"[{snippet_text(label)}$0]" if is_array and not label.startswith("[") else ""
+        return Completion(label, kind, cursor.start, detail, description, snippet)
+
+    taken = {text for text, start in cursor.within.items() if start != cursor.start}
+    if last == "type" and section.is_manager:
+        for kind in _resembling(controller_types(), name.rpartition(".")[0]):
+            yield item(kind, description=controller_purpose(kind) or "")
+    elif last in ("plugin", "primary_controller"):
+        for kind in _plugin_types(section, name.rpartition(".")[0], last):
+            yield item(kind)
+    elif parameter is not None and parameter.type == "bool":
+        for word in ("true", "false"):
+            yield item(word, detail=_default_mark(parameter, word))
+    elif parameter is not None and parameter.choices:
+        for word in parameter.choices:
+            yield item(word, detail=_default_mark(parameter, word))
+    elif _INTERFACE.search(last):
+        for word in INTERFACES:
+            if word not in taken:
+                yield item(word)
+    elif any(plugin.listed == last for plugin in plugins().values()):
+        for entry in section.entry.children:
+            if entry.child("plugin") is not None and entry.key not in taken:
+                yield item(entry.key, ItemKind.NAME)
+    else:
+        default = parameter.written_default if parameter is not None else ""
+        for label, detail in _robot_values(document, last, default):
+            if label not in taken:
+                yield item(label, ItemKind.NAME, detail)
+    if parameter is not None and not cursor.in_list and parameter.written_default and not parameter.choices:
+        default = parameter.written_default
+        if parameter.type != "bool":
+            yield item(default, detail=localized(phrase("default")))
+
+
+def _default_mark(parameter: ParameterInfo, word: str) -> str:
+    return localized(phrase("default")) if parameter.written_default.strip('"') == word else ""
+
+
+def _robot_values(document: Document, key: str, default: str) -> Iterator[tuple[str, str]]:
+    """Yield the names of joints or frames for a parameter, each with a few words: the default frame first."""
+    kinds = kinds_of_parameter(key)
+    if not kinds:
+        return
+    if default in _USUAL_FRAMES:
+        yield default, localized(phrase("default"))
+    found = robot_names(document.project, document.texts, document.file)
+    if NameKind.JOINT in kinds:  # joints that move first
+        found.sort(key=lambda name: name.detail == "fixed")
+    for name in found:
+        if name.kind in kinds:
+            yield name.name, name.detail or name.kind.value
+    if NameKind.LINK in kinds:
+        for frame in _USUAL_FRAMES:
+            yield frame, "REP 105"
+
+
+def _resembling(types: Iterable[str], name: str) -> list[str]:
+    """Return types, those first that resemble the name of a controller or plugin."""
+    words = [word for word in re.split(r"\W|_|(?<=[a-z])(?=[A-Z])", name) if word]
+
+    def rank(kind: str) -> int:
+        return -sum(len(word) for word in words if word.lower() in kind.lower())
+
+    return sorted(types, key=rank)
+
+
+def _plugin_types(section: Section, plugin: str, key: str) -> list[str]:
+    """Return the types that a plugin may have: those of the parameter that names it, if there is one."""
+    if key == "primary_controller":
+        return plugin_types(section.node, "controller_plugins")
+    given = section.given()
+    for listed in dict.fromkeys(each.listed for each in plugins().values()):
+        entry, parameter = given.get(listed), section.find(listed)
+        names = [parameter.default] if parameter is not None else []
+        if entry is not None:
+            names = [[text for text, _ in entry.items()], entry.scalar]
+        if any(plugin == name or (isinstance(name, list) and plugin in name) for name in names):
+            return _resembling(plugin_types(section.node, listed), plugin)
+    return _resembling(plugin_types(section.node) or [each.type for each in plugins().values()], plugin)
