@@ -100,3 +100,20 @@ def test_symbols_are_arguments_nodes_and_included_files(at):
     place = at(f"|DeclareLaunchArgument('gui')\nNode(package='p', executable='e')\n{INCLUDE.format('[]')}")
     names = [symbol.name for symbol in place.format.symbols(place.document)]
     assert names == ["arg gui", "Node e", "include parts.launch.py"]
+
+
+def test_true_and_false_are_written_as_elsewhere_in_the_file(at):
+    assert at("DeclareLaunchArgument('use_x', default_value='|')").labels()[:2] == ["true", "false"]
+    text = "DeclareLaunchArgument('a', default_value='True')\nDeclareLaunchArgument('use_x', default_value='|')"
+    assert at(text).labels()[:2] == ["True", "False"]
+
+
+def test_names_that_the_caller_declares_are_offered_after_those_of_the_file(at):
+    text = "DeclareLaunchArgument('a')\nb = LaunchConfiguration('outer')\nc = LaunchConfiguration('|')"
+    assert at(text).labels() == ["a", "outer"]
+
+
+def test_a_dependency_that_is_not_found_is_offered(at):
+    manifest = at("|").document.file.parents[1] / "package.xml"
+    manifest.write_text(manifest.read_text().replace("</package>", "<exec_depend>far_away</exec_depend></package>"))
+    assert "far_away" in at("Node(package='|')").labels()[:3]

@@ -110,6 +110,7 @@ class Format:
         define: returns the places where the name at an offset is defined.
         links: returns the references to other files.
         symbols: returns the parts with names; None for the elements of an XML text.
+        needs_index: whether the functions use the descriptions in the folders of the editor.
     """
 
     covers: Callable[[Path], bool]
@@ -118,3 +119,4 @@ class Format:
     define: Callable[[Document, int], Iterable[Target]] = _nothing
     links: Callable[[Document], Iterable[FileReference]] = _nothing
     symbols: Callable[[Document], Iterable[Symbol]] | None = None
+    needs_index: bool = False

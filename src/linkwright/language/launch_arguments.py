@@ -16,6 +16,8 @@ _YAML_ARGUMENT = re.compile(r"^(?P<indent>[ ]*)-[ ]*(?:arg|let)[ ]*:[ ]*$", re.M
 _YAML_KEY = re.compile(
     r"^(?P<indent>[ ]+)(?P<key>name|default|value|description)[ ]*:[ ]*(?P<value>.*?)[ ]*$", re.MULTILINE
 )
+_LEVELS = ("info", "debug", "warn", "error", "fatal")
+_CAPITAL, _SMALL = re.compile(r"""["'](?:True|False)["']"""), re.compile(r"""["'](?:true|false)["']""")
 _MOST_TEXT = 1_000_000
 _LOOKED_BACK = 200
 """The number of statements before a declaration among which the loop around it is searched."""
@@ -62,6 +64,26 @@ class LaunchArgument:
         if self.choices:
             lines.append(" | ".join(f"`{choice}`" for choice in self.choices))
         return "\n\n".join(lines)
+
+
+def likely_values(argument: LaunchArgument | None, name: str, text: str) -> tuple[str, ...]:
+    """Return the likely values of an argument, in the spelling of a launch file.
+
+    Args:
+        argument: the argument; None if only its name is known.
+        name: its name.
+        text: the launch file in which the value is written.
+    """
+    if argument is not None and argument.choices:
+        return argument.choices
+    if name.endswith("log_level"):
+        return _LEVELS
+    if argument is None or argument.is_condition or argument.default is None:
+        capital = len(_CAPITAL.findall(text)) > len(_SMALL.findall(text))
+        small, large = ("true", "false"), ("True", "False")
+        return (*large, *small) if capital else (*small, *large)
+    default = argument.default.strip("'\"")
+    return (default,) if default and "(" not in default else ()
 
 
 def arguments_in(text: str, file: Path) -> list[LaunchArgument]:

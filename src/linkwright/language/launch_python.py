@@ -10,7 +10,7 @@ from pathlib import Path
 from linkwright.language.completion import Completion, ItemKind
 from linkwright.language.format import Document, Format, Symbol, SymbolKind, Target
 from linkwright.language.hover import Explanation
-from linkwright.language.launch_arguments import LaunchArgument, arguments_in
+from linkwright.language.launch_arguments import LaunchArgument, arguments_in, likely_values
 from linkwright.language.links import FileReference
 from linkwright.language.offers import (
     explain_file,
@@ -98,7 +98,9 @@ class _LaunchText:
         if keyword == "output":
             return _Place("output", text, choices=_OUTPUTS)
         if keyword == "default_value":
-            return _Place("choice", text, base=self.paths.before(text, item), choices=self._choices(group))
+            name = self.paths.text_of(group.argument("name", 0)) or ""
+            choices = self._choices(group) or likely_values(None, name, self.document.text)
+            return _Place("choice", text, base=self.paths.before(text, item), choices=choices)
         included = self._included_arguments(text, item)
         if included is not None:
             return included
@@ -106,6 +108,14 @@ class _LaunchText:
             own = tuple(argument for argument in self.arguments if argument.start == text.start)
             return _Place("argument", text, arguments=own)
         return _Place("path", text, base=self.paths.before(text, item))
+
+    def used_names(self, apart: Text) -> list[str]:
+        """Return the names of configurations that the file uses but does not declare, as its caller declares them."""
+        calls = self.python.calls_of(*_CONFIGURATIONS)
+        parts = (part for call in calls for item in call.items[:1] for part in item.parts[:1])
+        names = dict.fromkeys(part.value for part in parts if isinstance(part, Text) and part is not apart)
+        declared = {argument.name for argument in self.arguments}
+        return [name for name in names if name and name not in declared]
 
     def _choices(self, call: Group) -> tuple[str, ...]:
         listed = call.argument("choices")
@@ -119,16 +129,17 @@ class _LaunchText:
         if include is None:
             return None
         path = self.included_file(include)
-        declared = tuple(self._declared_in(path)) if path is not None else ()
-        first = item.parts[0]
-        is_pair = item.group.opening == "(" and not item.group.callee
-        key = item.group.items[0].parts[:1] if is_pair else [first]
-        is_key = text is first and (not is_pair or item.group.items[0] is item)
-        if is_key:
-            return _Place("argument", text, arguments=declared)
-        name = key[0].value if key and isinstance(key[0], Text) else ""
+        declared = tuple(self._declared_in(path)) if path is not None else self.arguments
+        group = item.group
+        is_pair = group.opening == "(" and not group.callee
+        first = group.items[0].parts[:1] if is_pair else item.parts[:1]
+        name = first[0].value if first and isinstance(first[0], Text) else ""
+        if first and first[0] is text:
+            return _Place("argument", text, arguments=declared) if is_pair or group.opening == "{" else None
+        if not is_pair and group.opening != "{":
+            return None
         argument = next((each for each in declared if each.name == name), None)
-        choices = () if argument is None else argument.choices or (("true", "false") if argument.is_condition else ())
+        choices = () if argument is None else likely_values(argument, name, self.document.text)
         return _Place("choice", text, base=self.paths.before(text, item), choices=choices)
 
     def included_file(self, include: Group) -> Path | None:
@@ -190,6 +201,9 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
             if place.text.start != argument.start or argument.file != document.file:
                 detail = argument.default or ""
                 yield Completion(argument.name, ItemKind.NAME, start, detail, argument.described())
+        if place.kind == "configuration":
+            for name in launch.used_names(place.text):
+                yield Completion(name, ItemKind.NAME, start)
     else:
         yield from offer_values(place.choices, start)
         yield from _offer_path(launch, place, offset)

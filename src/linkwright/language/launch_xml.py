@@ -13,7 +13,7 @@ from linkwright.language.cursor import Cursor, Spot, cursor_at
 from linkwright.language.format import Document, Format, Symbol, SymbolKind, Target
 from linkwright.language.grammar import is_launch_file, rule_at
 from linkwright.language.hover import Explanation, explain_at
-from linkwright.language.launch_arguments import LaunchArgument, arguments_in
+from linkwright.language.launch_arguments import LaunchArgument, arguments_in, likely_values
 from linkwright.language.launch_schema import LAUNCH, choices_of
 from linkwright.language.launch_text import (
     evaluated,
@@ -45,6 +45,7 @@ from linkwright.xmltree.tokens import Kind, Token, tokens
 
 _PACKAGES = frozenset({"find-pkg-share", "find-pkg-prefix", "find"})
 _VARIABLES = frozenset({"var", "arg"})
+_USE = re.compile(r"\$\((?:var|arg)\s+([\w./-]+)")
 _PATHS = frozenset({"file", "from", "filename", "world_sdf_file", "config_file", "new_log_dir", "cwd"})
 _INTO_ARGUMENTS = frozenset({"arg", "let"})
 _WITH_VARIABLES = frozenset({"value", "default", "args", "cmd", "if", "unless", "namespace", "ros_args"})
@@ -65,6 +66,11 @@ class _LaunchText:
     @cached_property
     def configurations(self) -> Mapping[str, str | None]:
         return {argument.name: argument.default for argument in self.arguments}
+
+    def used_names(self, apart: int) -> list[str]:
+        """Return the names in ``$(var NAME)`` that the file does not declare, except the one at an offset."""
+        found = (use for use in _USE.finditer(self.document.text) if use.start(1) != apart)
+        return [name for name in dict.fromkeys(use[1] for use in found) if name not in self.configurations]
 
     def path_of(self, written: str) -> Path | None:
         """Return the path of a text, relative to the folder of the file; None if it is not known."""
@@ -113,6 +119,8 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
             yield from offer_packages(document, start)
         elif substitution.command in _VARIABLES and len(substitution.arguments) == 1:
             yield from _offer_arguments(launch.arguments, start)
+            for name in launch.used_names(start):
+                yield Completion(name, ItemKind.NAME, start)
         elif substitution.command == "exec-in-pkg" and len(substitution.arguments) > 1:
             yield from offer_packages(document, start)
         elif substitution.command == "find-exec":
@@ -142,7 +150,7 @@ def _values(launch: _LaunchText, cursor: Cursor) -> Iterator[Completion]:
         yield from offer_components(document, launch.package_of(cursor), start)
     elif is_included and name == "name":
         given = _given_arguments(document.text, offset)
-        found = launch.included_arguments(offset)
+        found = launch.included_arguments(offset) or launch.arguments
         yield from _offer_arguments([each for each in found if each.name not in given], start)
         return
     elif name in ("if", "unless"):
@@ -186,15 +194,11 @@ def _choices(launch: _LaunchText, cursor: Cursor, *, is_included: bool) -> tuple
     """Return the likely values of an argument: its choices, or both values of a condition."""
     given = {} if cursor.token is None else _given(cursor.token)
     found = launch.included_arguments(cursor.offset) if is_included else launch.arguments
-    argument = next((each for each in found if each.name == given.get("name")), None)
-    if argument is None:
-        return ("true", "false") if given.get("name") == "use_sim_time" else ()
-    if argument.choices:
-        return argument.choices
-    default = (argument.default or "").strip("'\"")
-    if is_included and default.lower() in ("true", "false"):
-        return ("true", "false")
-    return (default,) if is_included and default and "(" not in default else ()
+    name = given.get("name", "")
+    argument = next((each for each in found if each.name == name), None)
+    if is_included and argument is None:
+        return ()
+    return likely_values(argument if is_included else None, name, launch.document.text)
 
 
 def _offer_path(launch: _LaunchText, word: str, offset: int, *, launch_files: bool) -> Iterator[Completion]:

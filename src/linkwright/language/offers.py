@@ -10,7 +10,7 @@ from linkwright.diagnostics.translation import localized
 from linkwright.language.completion import Completion, ItemKind
 from linkwright.language.facts import mesh_facts, package_facts
 from linkwright.language.format import Document, Target
-from linkwright.language.programs import components_of, package_names, programs_of
+from linkwright.language.programs import components_of, package_names, programs_of, replaced_packages
 from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.share_layout import source_of
 
@@ -25,9 +25,10 @@ def offer_packages(document: Document, start: int) -> Iterator[Completion]:
         document: the text.
         start: the offset from which the typed text is replaced.
     """
-    folders = document.finder.packages()
+    folders, replaced = document.finder.packages(), replaced_packages()
     for name in package_names(document.finder, document.file):
-        yield Completion(name, ItemKind.PACKAGE, start, str(folders.get(name, "Linkwright")))
+        origin = folders.get(name) or ("Linkwright" if name in replaced else MANIFEST)
+        yield Completion(name, ItemKind.PACKAGE, start, str(origin))
 
 
 def offer_programs(document: Document, package: str | None, start: int) -> Iterator[Completion]:

@@ -18,7 +18,7 @@ from linkwright.packages.share_layout import source_of, substituted_executables
 
 _REGISTERED = re.compile(r"(?i)\brclcpp_components_register_nodes?\s*\(([^)]*)\)")
 _CLASS = re.compile(r"\b[A-Za-z_]\w*(?:::\w+)+")
-_DEPENDENCY = re.compile(r"<(?:\w+_)?depend\b[^<>]*>\s*([\w.-]+)\s*<")
+_DEPENDENCY = re.compile(r"<(?:exec_|run_)?depend\b[^<>]*>\s*([a-z]\w*)\s*<")
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,11 +37,16 @@ class Program:
 
 
 def package_names(finder: PackageFinder, file: Path) -> list[str]:
-    """Return the names of all packages: the package of a file first, then those that it depends on."""
+    """Return the names of all packages: the package of a file first, then those that it depends on, found or not."""
     own = enclosing_package(file.parent)
     first = [] if own is None else [own[0], *_DEPENDENCY.findall(text_of(own[1] / "package.xml"))]
-    known = {*finder.packages(), *builtin_packages(), *substituted_executables()}
-    return [*dict.fromkeys(name for name in first if name in known), *sorted(known - {*first})]
+    known = {*finder.packages(), *replaced_packages()}
+    return [*dict.fromkeys(first), *sorted(known - {*first})]
+
+
+def replaced_packages() -> set[str]:
+    """Return the packages that nodes or modules of Linkwright replace, with or without files."""
+    return {*builtin_packages(), *substituted_executables()}
 
 
 def programs_of(finder: PackageFinder, package: str) -> dict[str, Program]:

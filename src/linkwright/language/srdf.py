@@ -197,5 +197,5 @@ def _links(document: Document) -> Iterator[FileReference]:
     return file_references(document.text, document.file, document.finder)
 
 
-SRDF_FILES = Format(is_srdf, _complete, _explain, _define, _links)
+SRDF_FILES = Format(is_srdf, _complete, _explain, _define, _links, needs_index=True)
 """SRDF, with or without xacro."""

@@ -107,6 +107,14 @@ class LinkwrightServer(LanguageServer):
             return Path(), None
         return path, self.positions(path)
 
+    async def formatted(self, document: types.TextDocumentIdentifier) -> FormattedText | None:
+        """Return a document as `document` does, once the folders have been searched if its format needs that."""
+        found = self.document(document)
+        if found is not None and found.format.needs_index:
+            await self.when_indexed()
+            found = self.document(document)
+        return found
+
     def document(self, document: types.TextDocumentIdentifier) -> FormattedText | None:
         """Return a document with its format; None if its format has no functions of its own or it cannot be read."""
         path = path_of(document.uri)

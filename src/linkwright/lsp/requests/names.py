@@ -173,7 +173,7 @@ def add_requests(server: LinkwrightServer) -> None:
         capabilities = server.client_capabilities.text_document
         item = capabilities.completion.completion_item if capabilities and capabilities.completion else None
         takes_snippets = bool(item and item.snippet_support)
-        own = server.document(asked.text_document)
+        own = await server.formatted(asked.text_document)
         if own is not None:
             await server.when_indexed()
             server.check_unchanged(own.document.file, own.positions)
@@ -187,7 +187,7 @@ def add_requests(server: LinkwrightServer) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_HOVER)
     async def hover_request(server: LinkwrightServer, asked: types.HoverParams) -> types.Hover | None:
-        own = server.document(asked.text_document)
+        own = await server.formatted(asked.text_document)
         if own is not None:
             return await server.in_thread(lambda: explained(own, asked.position))
         path, positions = server.text(asked.text_document)
@@ -204,7 +204,7 @@ def add_requests(server: LinkwrightServer) -> None:
     async def definition_request(
         server: LinkwrightServer, asked: types.DefinitionParams
     ) -> list[types.Location] | None:
-        own = server.document(asked.text_document)
+        own = await server.formatted(asked.text_document)
         if own is not None:
             targets = await server.in_thread(lambda: targets_at(own, asked.position))
             return [*_target_locations(targets, server.positions, server.uri_of)]

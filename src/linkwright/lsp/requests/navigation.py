@@ -169,7 +169,7 @@ def add_requests(server: LinkwrightServer) -> None:
     async def document_links(
         server: LinkwrightServer, asked: types.DocumentLinkParams
     ) -> list[types.DocumentLink] | None:
-        own = server.document(asked.text_document)
+        own = await server.formatted(asked.text_document)
         if own is not None:
             found = await server.in_thread(lambda: [*own.format.links(own.document)])
             return _links(server, own.positions, found)
