@@ -221,6 +221,19 @@ def test_symbols_are_the_keys(typing):
     assert [child.name for child in manager.children[0].children] == ["update_rate", "drive", "arm"]
 
 
+def test_parameters_of_own_nodes_come_from_their_sources(typing):
+    source = "class A(Node):\n    def __init__(self):\n        super().__init__('finder')\n"
+    declared = "        self.declare_parameter('size', 0.5)\n        self.declare_parameter('is_on', True)\n"
+    (typing.folder / "finder.py").write_text(source + declared)
+    (typing.folder / "other.cpp").write_text('declare_parameter<int>("speed", 3); Node("other")')
+    text = "finder:\n  ros__parameters:\n    "
+    assert typing.labels(text + "|")[:2] == ["size", "is_on"]
+    assert "speed" not in typing.labels(text + "|")
+    assert typing.labels(text + "is_on: |") == ["true", "false"]
+    assert "double" in typing.explained(text + "si|ze: 1.0")
+    assert typing.targets(text + "si|ze: 1.0") == [("finder.py", "size")]
+
+
 def test_names_follow_an_open_description(typing):
     file = typing.folder / "r.urdf.xacro"
     text = "base_frame_id: |"

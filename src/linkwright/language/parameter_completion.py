@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.language.completion import Completion, ItemKind
+from linkwright.language.declared_parameters import DeclaredParameter, declared_parameters
 from linkwright.language.definitions import NameKind
 from linkwright.language.format import Document
 from linkwright.language.mentions import kinds_of_key
@@ -112,6 +113,7 @@ def _keys(document: Document, section: Section, cursor: YamlCursor, colon: str) 
         yield from _manager_keys(section, cursor, colon)
     place = section.prefix.split(".") if section.prefix else []
     yield from _plugin_keys(section, cursor, colon, taken)
+    yield from _keys_in_sources(document, section, cursor, colon, taken)
     groups: dict[str, list[str]] = {}
     dotted: list[Completion] = []
     for parameter in sorted(section.parameters(), key=lambda parameter: bool(_NUMBERED.match(parameter.name))):
@@ -136,6 +138,28 @@ def _keys(document: Document, section: Section, cursor: YamlCursor, colon: str) 
             shown = ", ".join(f"`{part}`" for part in dict.fromkeys(inside))
             yield Completion(name, ItemKind.NAME, cursor.start, "", shown, colon and f"{snippet_text(name)}:\n  $0")
     yield from dotted
+
+
+def _keys_in_sources(
+    document: Document, section: Section, cursor: YamlCursor, colon: str, taken: set[str]
+) -> Iterator[Completion]:
+    """Yield the parameters that the sources of a node of the workspace declare."""
+    for parameter in sources_of(document, section):
+        place = f"{section.prefix}." if section.prefix else ""
+        if parameter.name.startswith(place):
+            first, _, rest = parameter.name.removeprefix(place).partition(".")
+            if first not in taken:
+                detail = f"{parameter.type} = {parameter.default}" if parameter.default else parameter.type
+                end = ":\n  $0" if rest else ": $0"
+                snippet = colon and snippet_text(first) + end
+                yield _key(cursor, first, "" if rest else detail, f"`{parameter.file.name}`", snippet)
+
+
+def sources_of(document: Document, section: Section) -> list[DeclaredParameter]:
+    """Return the parameters that sources of the workspace declare, if the node of a section is not known."""
+    if not section.may_be_controller or section.node in section.controllers:
+        return []
+    return declared_parameters(document.project, document.texts, section.node)
 
 
 def _keys_elsewhere(
@@ -259,11 +283,12 @@ def _values(document: Document, section: Section, cursor: YamlCursor) -> Iterato
         uses_colons = _COLONS.search(document.text) is not None
         for kind in _plugin_types(section, name.rpartition(".")[0], last):
             yield item(kind.replace("/", "::") if uses_colons else kind)
-    elif parameter is not None and parameter.type == "bool":
+    elif _is_boolean(document, section, name):
         counts = [len(pattern.findall(document.text)) for pattern in (_SMALL, _CAPITALS)]
         is_capital = cursor.typed[:1].isupper() if cursor.typed else counts[1] > counts[0]
         for word in ("true", "false"):
-            yield item(word.title() if is_capital else word, detail=_default_mark(parameter, word))
+            mark = "" if parameter is None else _default_mark(parameter, word)
+            yield item(word.title() if is_capital else word, detail=mark)
     elif parameter is not None and parameter.choices:
         for word in parameter.choices:
             yield item(word, detail=_default_mark(parameter, word))
@@ -287,6 +312,13 @@ def _values(document: Document, section: Section, cursor: YamlCursor) -> Iterato
         default = parameter.written_default
         if parameter.type != "bool":
             yield item(default, detail=localized(phrase("default")))
+
+
+def _is_boolean(document: Document, section: Section, name: str) -> bool:
+    parameter = section.find(name)
+    if parameter is not None:
+        return parameter.type == "bool"
+    return any(declared.name == name and declared.type == "bool" for declared in sources_of(document, section))
 
 
 def _default_mark(parameter: ParameterInfo, word: str) -> str:

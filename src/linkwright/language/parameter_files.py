@@ -12,7 +12,12 @@ from linkwright.language.facts import part_facts, robots_of
 from linkwright.language.format import Document, Format, Target
 from linkwright.language.hover import Explanation
 from linkwright.language.parameter_catalogue import controller_purpose, node_parameters, plugins
-from linkwright.language.parameter_completion import complete_parameters, described, kinds_of_parameter
+from linkwright.language.parameter_completion import (
+    complete_parameters,
+    described,
+    kinds_of_parameter,
+    sources_of,
+)
 from linkwright.language.parameter_sections import (
     PARAMETERS,
     Section,
@@ -92,6 +97,10 @@ def _explained_key(document: Document, outline: YamlOutline, entry: YamlEntry) -
     plugin = entry.child("plugin")
     if plugin is not None:
         return f"**{entry.key}** " + _explained_plugin(plugin.scalar)
+    own = next((declared for declared in sources_of(document, section) if declared.name == name), None)
+    if own is not None:
+        default = f" = `{own.default}`" if own.default else ""
+        return f"**{name}** `{own.type}`{default}\n\n`{own.file.name}`".replace(" ``", "")
     inside = {shown: None for known in section.parameters() if (shown := known.rest_below(name))}
     facts = part_explanation(document, entry.key, (NameKind.JOINT, NameKind.LINK))
     if facts:
@@ -169,6 +178,12 @@ def define_in_parameters(document: Document, offset: int) -> Iterator[Target]:
     if declaration is not None:
         yield Target(document.file, declaration.start, declaration.start + len(declaration.key))
         return
+    if section is not None and cursor.place is Place.KEY:
+        wanted = section.name(word)
+        for own in sources_of(document, section):
+            if own.name == wanted:
+                yield Target(own.file, own.start, own.start + len(own.name))
+                return
     for name in robot_names(document.project, document.texts, document.file):
         if name.name == word and (name.kind in kinds or (not kinds and cursor.in_list)):
             yield target_of(document, name)
