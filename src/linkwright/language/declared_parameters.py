@@ -59,7 +59,7 @@ class DeclaredParameter:
 class _Sources:
     files: list[Path]
     time: float
-    known: dict[Path, tuple[object, str, tuple[DeclaredParameter, ...]]]
+    cache: dict[Path, tuple[object, str, tuple[DeclaredParameter, ...]]]
 
 
 _sources: WeakKeyDictionary[Workspace, _Sources] = WeakKeyDictionary()
@@ -75,11 +75,11 @@ def declared_parameters(project: Workspace, texts: Mapping[Path, str], node: str
         texts: the texts of the open files.
         node: the name of the node.
     """
-    named: list[DeclaredParameter] = []
+    of_node: list[DeclaredParameter] = []
     others: list[DeclaredParameter] = []
     for text, parameters in _read(project, texts):
-        (named if f'"{node}"' in text or f"'{node}'" in text else others).extend(parameters)
-    return named or others
+        (of_node if f'"{node}"' in text or f"'{node}'" in text else others).extend(parameters)
+    return of_node or others
 
 
 def _read(project: Workspace, texts: Mapping[Path, str]) -> Iterator[tuple[str, tuple[DeclaredParameter, ...]]]:
@@ -87,33 +87,33 @@ def _read(project: Workspace, texts: Mapping[Path, str]) -> Iterator[tuple[str, 
     sources = _sources.get(project)
     if sources is None or time.monotonic() - sources.time > _SECONDS:
         files = [real(file) for folder in project.index.packages for file in walk(folder, _SOURCES)[0]]
-        known = {} if sources is None else sources.known
-        sources = _sources[project] = _Sources(files[:_MAX_FILES], time.monotonic(), known)
+        cache = {} if sources is None else sources.cache
+        sources = _sources[project] = _Sources(files[:_MAX_FILES], time.monotonic(), cache)
     for file in sources.files:
         try:
             state: object = texts.get(file) or file.stat().st_mtime_ns
         except OSError:
             continue
-        entry = sources.known.get(file)
+        entry = sources.cache.get(file)
         if entry is None or entry[0] != state:
             text = project.text(file, texts) or ""
             parameters = tuple(_declarations(text, file)) if len(text) <= _MAX_TEXT else ()
-            entry = sources.known[file] = (state, text if parameters else "", parameters)
+            entry = sources.cache[file] = (state, text if parameters else "", parameters)
         if entry[2]:
             yield entry[1], entry[2]
 
 
 def _declarations(text: str, file: Path) -> Iterator[DeclaredParameter]:
-    for found in _DECLARATION.finditer(text):
-        default = (found[3] or "").strip()
-        yield DeclaredParameter(found[2], _type_of(found[1] or "", default), default, file, found.start(2))
+    for match in _DECLARATION.finditer(text):
+        default = (match[3] or "").strip()
+        yield DeclaredParameter(match[2], _type_of(match[1] or "", default), default, file, match.start(2))
 
 
 def _type_of(written: str, default: str) -> str:
     """Return the type of a parameter by its type in C++, or by the text of its default."""
-    known = _TYPES.get(written.replace(" ", ""))
-    if known is not None:
-        return known
+    cpp_type = _TYPES.get(written.replace(" ", ""))
+    if cpp_type is not None:
+        return cpp_type
     if default.lower() in ("true", "false"):
         return "bool"
     if default[:1] in ("'", '"'):

@@ -51,14 +51,18 @@ class ParameterInfo:
 
     def matches(self, name: str) -> bool:
         """Return whether a name with dots is that of the parameter."""
-        own, parts = self.name.split("."), name.split(".")
-        return len(own) == len(parts) and all(mark in ("*", part) for mark, part in zip(own, parts, strict=True))
+        own_parts, parts = self.name.split("."), name.split(".")
+        return len(own_parts) == len(parts) and all(
+            mark in ("*", part) for mark, part in zip(own_parts, parts, strict=True)
+        )
 
     def rest_below(self, name: str) -> str:
         """Return the rest of the parameter's name below a group; empty if the group does not contain it."""
-        own, group = self.name.split("."), name.split(".")
-        is_inside = len(own) > len(group) and all(mark in ("*", part) for mark, part in zip(own, group, strict=False))
-        return ".".join(own[len(group) :]) if is_inside else ""
+        own_parts, group = self.name.split("."), name.split(".")
+        is_inside = len(own_parts) > len(group) and all(
+            mark in ("*", part) for mark, part in zip(own_parts, group, strict=False)
+        )
+        return ".".join(own_parts[len(group) :]) if is_inside else ""
 
     @property
     def written_default(self) -> str:
@@ -155,17 +159,17 @@ def controller_types() -> list[str]:
     return [*extensions(_CONTROLLERS)]
 
 
-def controller_parameters(kind: str, given: Collection[str] = ()) -> tuple[ParameterInfo, ...]:
+def controller_parameters(kind: str, names: Collection[str] = ()) -> tuple[ParameterInfo, ...]:
     """Return the parameters of a controller type; none if the type is not known or cannot be imported.
 
     Args:
         kind: the type name.
-        given: the names of the given parameters, which tell two controllers with the same type name apart.
+        names: the names of the parameters that are set, which tell two controllers with the same type name apart.
     """
-    found = _controller(kind)
-    if found is None:
+    controller = _controller(kind)
+    if controller is None:
         return ()
-    return _controller_table(found.variant(given), kind)
+    return _controller_table(controller.variant(names), kind)
 
 
 @cache
@@ -188,8 +192,8 @@ def _controller_table(controller: Any, kind: str) -> tuple[ParameterInfo, ...]:
 
 def controller_purpose(kind: str) -> str | None:
     """Return the first paragraph about a controller type; None if the type is not known."""
-    found = _controller(kind)
-    return None if found is None else cleandoc(found.__doc__ or "").partition("\n\n")[0]
+    controller = _controller(kind)
+    return None if controller is None else cleandoc(controller.__doc__ or "").partition("\n\n")[0]
 
 
 def _controller(kind: str) -> Any:

@@ -1,4 +1,4 @@
-"""Completions in ROS 2 parameter files, also those of ros2_control: nodes, parameters, types, joints and frames."""
+"""Completions in ROS 2 parameter files, also those of ros2_control: nodes, controllers and their parameters."""
 
 from __future__ import annotations
 
@@ -8,10 +8,8 @@ from collections.abc import Iterable, Iterator
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.language.completion import Completion, ItemKind
-from linkwright.language.declared_parameters import DeclaredParameter, declared_parameters
 from linkwright.language.definitions import NameKind
 from linkwright.language.format import Document
-from linkwright.language.mentions import kinds_of_key
 from linkwright.language.parameter_catalogue import (
     ParameterInfo,
     controller_purpose,
@@ -29,14 +27,11 @@ from linkwright.language.parameter_sections import (
     section_at,
     sections,
 )
+from linkwright.language.parameter_values import kinds_of_parameter, parameter_values, sources_of
 from linkwright.language.robot_names import robot_names
 from linkwright.language.yaml_outline import Place, YamlCursor, YamlEntry, YamlOutline
 from linkwright.language.yaml_symbols import by_typed, has_colon, snippet_text
 
-INTERFACES = ("position", "velocity", "effort", "acceleration")
-_USUAL_FRAMES = ("map", "odom", "base_link", "base_footprint")
-"""Frames of mobile platforms (REP 105)."""
-_INTERFACE = re.compile(r"(^|_)(command_|state_)?interfaces?(_names?)?$")
 _USUAL_CONTROLLERS = (
     "joint_state_broadcaster/JointStateBroadcaster",
     "joint_trajectory_controller/JointTrajectoryController",
@@ -44,11 +39,7 @@ _USUAL_CONTROLLERS = (
 )
 _NUMBERED = re.compile(r"[a-z]+\d+(_|$)")
 """A parameter of one of several sensors, such as ``odom0_config``."""
-_CAPITALS = re.compile(r":[ \t]+(?:True|False)\b")
-_SMALL = re.compile(r":[ \t]+(?:true|false)\b")
-_COLONS = re.compile(r"plugin:[ \t]+[\"']?nav2_(?!costmap_2d)\w+::|plugin:[ \t]+[\"']?dwb_core::")
 _MAX_FILES = 40
-_SENSOR_TOPICS = ("/scan", "/points")
 _COSTMAPS = ("local_costmap", "global_costmap")
 
 
@@ -64,37 +55,34 @@ def complete_parameters(document: Document, offset: int) -> list[Completion]:
         colon = "" if has_colon(document.text, offset) else ":"
         items = _node_keys(outline, cursor, colon) if section is None else _keys(document, section, cursor, colon)
     else:
-        items = () if section is None else _values(document, section, cursor)
+        items = () if section is None else parameter_values(document, section, cursor)
     return by_typed(items, cursor.typed)
-
-
-# --- keys -------------------------------------------------------------------------------------------------------------
 
 
 def _node_keys(outline: YamlOutline, cursor: YamlCursor, colon: str) -> Iterator[Completion]:
     """Yield the keys outside of ``ros__parameters``: nodes and that key itself."""
     others = [child for child in cursor.within.children if child is not cursor.entry]
-    taken = {child.key for child in others}
+    present = {child.key for child in others}
     is_top = cursor.within.parent is None
     if is_top and others and not any(sections(outline)):
         return  # another kind of file
     body, above = f"{PARAMETERS}:\n    $0", cursor.within.key
     if not is_top:
-        if above in _COSTMAPS and len(cursor.within.path) == 1 and not taken:
+        if above in _COSTMAPS and len(cursor.within.path) == 1 and not present:
             yield _key(cursor, above, "node", "", colon and f"{above}:\n  {body}")
-        if PARAMETERS not in taken:
+        if PARAMETERS not in present:
             text = phrase("the parameters of the node")
             yield _key(cursor, PARAMETERS, "", text, colon and f"{PARAMETERS}:\n  $0")
-        if "ros__parameters" in taken:
+        if "ros__parameters" in present:
             return
-    if is_top and "/**" not in taken:
+    if is_top and "/**" not in present:
         text = phrase("parameters of all nodes")
         yield _key(cursor, "/**", "", text, colon and f"/**:\n  {body}")
     for name, kind in declared_controllers(outline).items():
-        if name not in taken:
+        if name not in present:
             yield _key(cursor, name, kind, controller_purpose(kind) or "", colon and f"{name}:\n  {body}")
     for name in node_names():
-        if name not in taken:
+        if name not in present:
             yield _key(cursor, name, "node", _names_of(node_parameters(name)), colon and f"{name}:\n  {body}")
 
 
@@ -108,12 +96,12 @@ def _names_of(parameters: Iterable[ParameterInfo]) -> str:
 
 def _keys(document: Document, section: Section, cursor: YamlCursor, colon: str) -> Iterator[Completion]:
     """Yield the parameters and groups at a place in ``ros__parameters``."""
-    taken = {child.key for child in cursor.within.children if child is not cursor.entry}
+    present = {child.key for child in cursor.within.children if child is not cursor.entry}
     if section.is_manager:
         yield from _manager_keys(section, cursor, colon)
     place = section.prefix.split(".") if section.prefix else []
-    yield from _plugin_keys(section, cursor, colon, taken)
-    yield from _keys_in_sources(document, section, cursor, colon, taken)
+    yield from _plugin_keys(section, cursor, colon, present)
+    yield from _keys_in_sources(document, section, cursor, colon, present)
     groups: dict[str, list[str]] = {}
     dotted: list[Completion] = []
     for parameter in sorted(section.parameters(), key=lambda parameter: bool(_NUMBERED.match(parameter.name))):
@@ -123,47 +111,40 @@ def _keys(document: Document, section: Section, cursor: YamlCursor, colon: str) 
         rest = parts[len(place) :]
         firsts = _names_for(document, section, parameter) if rest[0] == "*" else [rest[0]]
         for first in firsts:
-            if len(rest) == 1 and first not in taken:
+            if len(rest) == 1 and first not in present:
                 yield _parameter_key(cursor, first, parameter, colon)
             elif len(rest) > 1:
                 groups.setdefault(first, []).append(".".join(rest[1:]))
                 name = ".".join([first, *rest[1:]])
-                if "*" not in name and name not in taken:
+                if "*" not in name and name not in present:
                     dotted.append(_parameter_key(cursor, name, parameter, colon))
-    yield from _keys_elsewhere(document, section, cursor, colon, taken)
-    uses_dots = any("." in name for name in taken)
+    yield from _keys_elsewhere(document, section, cursor, colon, present)
+    uses_dots = any("." in name for name in present)
     yield from dotted if uses_dots else ()
     for name, inside in groups.items():
-        if name not in taken:
+        if name not in present:
             shown = ", ".join(f"`{part}`" for part in dict.fromkeys(inside))
             yield Completion(name, ItemKind.NAME, cursor.start, "", shown, colon and f"{snippet_text(name)}:\n  $0")
     yield from dotted
 
 
 def _keys_in_sources(
-    document: Document, section: Section, cursor: YamlCursor, colon: str, taken: set[str]
+    document: Document, section: Section, cursor: YamlCursor, colon: str, present: set[str]
 ) -> Iterator[Completion]:
     """Yield the parameters that the sources of a node of the workspace declare."""
     for parameter in sources_of(document, section):
         place = f"{section.prefix}." if section.prefix else ""
         if parameter.name.startswith(place):
             first, _, rest = parameter.name.removeprefix(place).partition(".")
-            if first not in taken:
+            if first not in present:
                 detail = f"{parameter.type} = {parameter.default}" if parameter.default else parameter.type
                 end = ":\n  $0" if rest else ": $0"
                 snippet = colon and snippet_text(first) + end
                 yield _key(cursor, first, "" if rest else detail, f"`{parameter.file.name}`", snippet)
 
 
-def sources_of(document: Document, section: Section) -> list[DeclaredParameter]:
-    """Return the parameters that sources of the workspace declare, if the node of a section is not known."""
-    if not section.may_be_controller or section.node in section.controllers:
-        return []
-    return declared_parameters(document.project, document.texts, section.node)
-
-
 def _keys_elsewhere(
-    document: Document, section: Section, cursor: YamlCursor, colon: str, taken: set[str]
+    document: Document, section: Section, cursor: YamlCursor, colon: str, present: set[str]
 ) -> Iterator[Completion]:
     """Yield the keys that other parameter files of the package have at this place, for a node that is not known."""
     if not section.may_be_controller or section.node in section.controllers:
@@ -175,24 +156,24 @@ def _keys_elsewhere(
             for key in section.prefix.split(".") if section.prefix else ():
                 below = None if below is None else below.child(key)
             for child in () if below is None else below.children:
-                if child.key and child.key not in taken:
+                if child.key and child.key not in present:
                     detail = f"{file.name}: {child.value[:40]}" if child.value else file.name
                     end = ":\n  $0" if child.children else ": $0"
                     yield _key(cursor, child.key, detail, "", colon and snippet_text(child.key) + end)
 
 
-def _plugin_keys(section: Section, cursor: YamlCursor, colon: str, taken: set[str]) -> Iterator[Completion]:
+def _plugin_keys(section: Section, cursor: YamlCursor, colon: str, present: set[str]) -> Iterator[Completion]:
     """Yield the plugins that a list names and that have no parameters yet, or the key ``plugin`` of such a plugin."""
-    given = section.given()
+    entries = section.entries()
     for listed in dict.fromkeys(plugin.listed for plugin in plugins().values()):
-        entry = given.get(listed)
+        entry = entries.get(listed)
         names = [] if entry is None else [text for text, _ in entry.items()] or [entry.scalar]
-        if section.prefix in names and "plugin" not in taken:
+        if section.prefix in names and "plugin" not in present:
             text = phrase("the type of the plugin")
             yield _key(cursor, "plugin", "string", text, colon and "plugin: $0")
         if not section.prefix and (not section.node or plugin_types(section.node, listed)):
             for name in names:
-                if name and name not in taken:
+                if name and name not in present:
                     yield _key(cursor, name, listed, "", colon and f"{snippet_text(name)}:\n  plugin: $0")
 
 
@@ -226,18 +207,18 @@ def described(parameter: ParameterInfo, name: str = "") -> str:
 
 def _names_for(document: Document, section: Section, parameter: ParameterInfo) -> list[str]:
     """Return the names for ``*``: those in the parameters that list them, or all joints."""
-    given = section.given()
+    entries = section.entries()
     names = [
         name
         for key in parameter.keys
-        if key in given
-        for name in ([text for text, _ in given[key].items()] or given[key].scalar.split())
+        if key in entries
+        for name in ([text for text, _ in entries[key].items()] or entries[key].scalar.split())
         if name
     ]
     if names or not parameter.keys or not any(kinds_of_parameter(key) for key in parameter.keys):
         return names
-    found = robot_names(document.project, document.texts, document.file)
-    return [name.name for name in found if name.kind is NameKind.JOINT and name.detail != "fixed"]
+    parts = robot_names(document.project, document.texts, document.file)
+    return [name.name for name in parts if name.kind is NameKind.JOINT and name.detail != "fixed"]
 
 
 def _manager_keys(section: Section, cursor: YamlCursor, colon: str) -> Iterator[Completion]:
@@ -246,123 +227,11 @@ def _manager_keys(section: Section, cursor: YamlCursor, colon: str) -> Iterator[
             text = phrase("the type of the controller")
             yield _key(cursor, "type", "string", text, colon and "type: $0")
         return
-    taken = {child.key for child in cursor.within.children}
+    present = {child.key for child in cursor.within.children}
     for kind in sorted(controller_types(), key=lambda kind: kind not in _USUAL_CONTROLLERS):
         package, _, name = kind.partition("/")
         if package.endswith("controllers"):
             package = re.sub(r"(?<!^)(?=[A-Z])", "_", name).lower()
-        if package not in taken:
+        if package not in present:
             snippet = colon and f"{package}:\n  type: {kind}"
             yield _key(cursor, package, kind, controller_purpose(kind) or "", snippet)
-
-
-# --- values -----------------------------------------------------------------------------------------------------------
-
-
-def kinds_of_parameter(key: str) -> tuple[NameKind, ...]:
-    """Return the kinds of names that the values of a parameter are; empty if its name does not tell."""
-    last = key.rpartition(".")[2]
-    return (NameKind.JOINT,) if last == "dof_names" else kinds_of_key(last)
-
-
-def _values(document: Document, section: Section, cursor: YamlCursor) -> Iterator[Completion]:
-    name = section.prefix
-    last = name.rpartition(".")[2]
-    parameter = section.find(name)
-    is_array = parameter is not None and parameter.type.endswith("_array") and not cursor.in_list
-
-    def item(label: str, kind: ItemKind = ItemKind.VALUE, detail: str = "", description: str = "") -> Completion:
-        snippet = f"[{snippet_text(label)}$0]" if is_array and not label.startswith("[") else ""
-        return Completion(label, kind, cursor.start, detail, description, snippet)
-
-    taken = {text for text, start in cursor.within.items() if start != cursor.start}
-    if last == "type" and (section.is_manager or (section.may_be_controller and name == "type")):
-        for kind in _resembling(controller_types(), name.rpartition(".")[0] or section.node):
-            yield item(kind, description=controller_purpose(kind) or "")
-    elif last in ("plugin", "primary_controller"):
-        uses_colons = _COLONS.search(document.text) is not None
-        for kind in _plugin_types(section, name.rpartition(".")[0], last):
-            yield item(kind.replace("/", "::") if uses_colons else kind)
-    elif _is_boolean(document, section, name):
-        counts = [len(pattern.findall(document.text)) for pattern in (_SMALL, _CAPITALS)]
-        is_capital = cursor.typed[:1].isupper() if cursor.typed else counts[1] > counts[0]
-        for word in ("true", "false"):
-            mark = "" if parameter is None else _default_mark(parameter, word)
-            yield item(word.title() if is_capital else word, detail=mark)
-    elif parameter is not None and parameter.choices:
-        for word in parameter.choices:
-            yield item(word, detail=_default_mark(parameter, word))
-    elif _INTERFACE.search(last):
-        for word in INTERFACES:
-            if word not in taken:
-                yield item(word)
-    elif any(plugin.listed == last for plugin in plugins().values()):
-        for entry in section.entry.children:
-            if entry.child("plugin") is not None and entry.key not in taken:
-                yield item(entry.key, ItemKind.NAME)
-    else:
-        default = parameter.written_default if parameter is not None else ""
-        for label, detail in _robot_values(document, last, default):
-            if label not in taken:
-                yield item(label, ItemKind.NAME, detail)
-    if last == "topic" and name.count("."):
-        for topic in _SENSOR_TOPICS:
-            yield item(topic)
-    if parameter is not None and not cursor.in_list and parameter.written_default and not parameter.choices:
-        default = parameter.written_default
-        if parameter.type != "bool":
-            yield item(default, detail=localized(phrase("default")))
-
-
-def _is_boolean(document: Document, section: Section, name: str) -> bool:
-    parameter = section.find(name)
-    if parameter is not None:
-        return parameter.type == "bool"
-    return any(declared.name == name and declared.type == "bool" for declared in sources_of(document, section))
-
-
-def _default_mark(parameter: ParameterInfo, word: str) -> str:
-    return localized(phrase("default")) if parameter.written_default.strip('"') == word else ""
-
-
-def _robot_values(document: Document, key: str, default: str) -> Iterator[tuple[str, str]]:
-    """Yield the names of joints or frames for a parameter, each with a few words: the default frame first."""
-    kinds = kinds_of_parameter(key)
-    if not kinds:
-        return
-    if default in _USUAL_FRAMES:
-        yield default, localized(phrase("default"))
-    found = robot_names(document.project, document.texts, document.file)
-    if NameKind.JOINT in kinds:  # joints that move first
-        found.sort(key=lambda name: name.detail == "fixed")
-    for name in found:
-        if name.kind in kinds:
-            yield name.name, name.detail or name.kind.value
-    if NameKind.LINK in kinds:
-        for frame in _USUAL_FRAMES:
-            yield frame, "REP 105"
-
-
-def _resembling(types: Iterable[str], name: str) -> list[str]:
-    """Return types, those first that resemble the name of a controller or plugin."""
-    words = [word for word in re.split(r"\W|_|(?<=[a-z])(?=[A-Z])", name) if word]
-
-    def rank(kind: str) -> int:
-        return -sum(len(word) for word in words if word.lower() in kind.lower())
-
-    return sorted(types, key=rank)
-
-
-def _plugin_types(section: Section, plugin: str, key: str) -> list[str]:
-    """Return the types that a plugin may have: those of the parameter that names it, if there is one."""
-    if key == "primary_controller":
-        return plugin_types(section.node, "controller_plugins")
-    given = section.given()
-    for listed in dict.fromkeys(each.listed for each in plugins().values()):
-        entry, parameter = given.get(listed), section.find(listed)
-        names = [parameter.default] if parameter is not None else []
-        if entry is not None:
-            names = [[text for text, _ in entry.items()], entry.scalar]
-        if any(plugin == name or (isinstance(name, list) and plugin in name) for name in names):
-            return _resembling(plugin_types(section.node, listed), plugin)
-    return _resembling(plugin_types(section.node) or [each.type for each in plugins().values()], plugin)

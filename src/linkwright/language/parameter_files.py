@@ -12,12 +12,7 @@ from linkwright.language.facts import part_facts, robots_of
 from linkwright.language.format import Document, Format, Target
 from linkwright.language.hover import Explanation
 from linkwright.language.parameter_catalogue import controller_purpose, node_parameters, plugins
-from linkwright.language.parameter_completion import (
-    complete_parameters,
-    described,
-    kinds_of_parameter,
-    sources_of,
-)
+from linkwright.language.parameter_completion import complete_parameters, described
 from linkwright.language.parameter_sections import (
     PARAMETERS,
     Section,
@@ -26,6 +21,7 @@ from linkwright.language.parameter_sections import (
     node_of,
     section_at,
 )
+from linkwright.language.parameter_values import kinds_of_parameter, sources_of
 from linkwright.language.robot_names import robot_names, written_length
 from linkwright.language.yaml_outline import Place, YamlCursor, YamlEntry, YamlOutline
 from linkwright.language.yaml_symbols import yaml_symbols
@@ -97,11 +93,15 @@ def _explained_key(document: Document, outline: YamlOutline, entry: YamlEntry) -
     plugin = entry.child("plugin")
     if plugin is not None:
         return f"**{entry.key}** " + _explained_plugin(plugin.scalar)
-    own = next((declared for declared in sources_of(document, section) if declared.name == name), None)
-    if own is not None:
-        default = f" = `{own.default}`" if own.default else ""
-        return f"**{name}** `{own.type}`{default}\n\n`{own.file.name}`".replace(" ``", "")
-    inside = {shown: None for known in section.parameters() if (shown := known.rest_below(name))}
+    declaration = next((declared for declared in sources_of(document, section) if declared.name == name), None)
+    if declaration is not None:
+        default = f" = `{declaration.default}`" if declaration.default else ""
+        return f"**{name}** `{declaration.type}`{default}\n\n`{declaration.file.name}`".replace(" ``", "")
+    declared_names = [declaration.name for declaration in sources_of(document, section)]
+    inside = {
+        parameter.removeprefix(f"{name}."): None for parameter in declared_names if parameter.startswith(f"{name}.")
+    }
+    inside |= {shown: None for parameter in section.parameters() if (shown := parameter.rest_below(name))}
     facts = part_explanation(document, entry.key, (NameKind.JOINT, NameKind.LINK))
     if facts:
         return facts
@@ -151,11 +151,11 @@ def _explained_value(document: Document, outline: YamlOutline, cursor: YamlCurso
 
 def part_explanation(document: Document, name: str, kinds: tuple[NameKind, ...]) -> str:
     """Return the facts about a link or joint in the robots that a file is likely to be about."""
-    for found in robot_names(document.project, document.texts, document.file):
-        if found.name == name and found.kind in kinds:
-            robots = robots_of(document.project, document.texts, found.file)
-            facts = next((facts for robot in robots if (facts := part_facts(robot, found.kind, name))), "")
-            return f"**{found.kind.value} {name}**, {found.file.name}\n\n{facts}"
+    for part in robot_names(document.project, document.texts, document.file):
+        if part.name == name and part.kind in kinds:
+            robots = robots_of(document.project, document.texts, part.file)
+            facts = next((facts for robot in robots if (facts := part_facts(robot, part.kind, name))), "")
+            return f"**{part.kind.value} {name}**, {part.file.name}\n\n{facts}"
     return ""
 
 
@@ -179,10 +179,10 @@ def define_in_parameters(document: Document, offset: int) -> Iterator[Target]:
         yield Target(document.file, declaration.start, declaration.start + len(declaration.key))
         return
     if section is not None and cursor.place is Place.KEY:
-        wanted = section.name(word)
-        for own in sources_of(document, section):
-            if own.name == wanted:
-                yield Target(own.file, own.start, own.start + len(own.name))
+        name_in_section = section.name(word)
+        for source in sources_of(document, section):
+            if source.name == name_in_section:
+                yield Target(source.file, source.start, source.start + len(source.name))
                 return
     for name in robot_names(document.project, document.texts, document.file):
         if name.name == word and (name.kind in kinds or (not kinds and cursor.in_list)):

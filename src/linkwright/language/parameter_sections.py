@@ -55,30 +55,30 @@ class Section:
         """Return the name of a parameter with a key at the place."""
         return f"{self.prefix}.{key}" if self.prefix else key
 
-    def given(self) -> dict[str, YamlEntry]:
+    def entries(self) -> dict[str, YamlEntry]:
         """Return the parameters that the section has, by name with dots."""
         return {".".join(_below(self.entry, entry)): entry for entry in self.entry.all() if entry.key}
 
     def parameters(self) -> list[ParameterInfo]:
         """Return the parameters that the node of the section may have, with those of its plugins."""
-        given = self.given()
+        entries = self.entries()
         if self.node in self.controllers:
-            own = list(controller_parameters(self.controllers[self.node], given.keys()))
+            parameters = list(controller_parameters(self.controllers[self.node], entries.keys()))
         else:
-            owners = [self.node] if node_parameters(self.node) else owners_of(given)[:1]
-            own = [parameter for owner in owners for parameter in node_parameters(owner)]
+            owners = [self.node] if node_parameters(self.node) else owners_of(entries)[:1]
+            parameters = [parameter for owner in owners for parameter in node_parameters(owner)]
             if not self.node:
-                own += [_EVERY_NODE, *_common_parameters()]
+                parameters += [_EVERY_NODE, *_common_parameters()]
         if self.may_be_controller:
-            own.append(_TYPE)
-        return [*own, *self._of_plugins(given), _EVERY_NODE]
+            parameters.append(_TYPE)
+        return [*parameters, *self._of_plugins(entries), _EVERY_NODE]
 
     def find(self, name: str) -> ParameterInfo | None:
         """Return the parameter with a name with dots, or None if it is not known."""
         return next((parameter for parameter in self.parameters() if parameter.matches(name)), None)
 
-    def _of_plugins(self, given: Mapping[str, YamlEntry]) -> Iterator[ParameterInfo]:
-        for name, entry in given.items():
+    def _of_plugins(self, entries: Mapping[str, YamlEntry]) -> Iterator[ParameterInfo]:
+        for name, entry in entries.items():
             prefix, _, last = name.rpartition(".")
             plugin = (
                 plugins().get(entry.scalar.replace("::", "/")) if last in ("plugin", "primary_controller") else None
@@ -125,17 +125,17 @@ def controller_declarations(outline: YamlOutline) -> dict[str, YamlEntry]:
 
     A controller is declared by its manager, or by a parameter ``type`` of its own.
     """
-    found: dict[str, YamlEntry] = {}
+    declarations: dict[str, YamlEntry] = {}
     for section in sections(outline):
-        own, node = section.child("type"), node_of(section)
-        if own is not None and node and "/" in own.scalar:
-            found[node] = own
+        kind_of_node, node = section.child("type"), node_of(section)
+        if kind_of_node is not None and node and "/" in kind_of_node.scalar:
+            declarations[node] = kind_of_node
         for child in section.children:
             name, dot, last = child.key.rpartition(".")
             kind = child if dot and last == "type" else child.child("type")
             if kind is not None and "/" in kind.scalar:
-                found[name if kind is child else child.key] = kind
-    return found
+                declarations[name if kind is child else child.key] = kind
+    return declarations
 
 
 def _declares_controllers(entry: YamlEntry) -> bool:

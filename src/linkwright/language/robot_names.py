@@ -48,21 +48,21 @@ def robot_names(project: Workspace, texts: Mapping[Path, str], file: Path) -> li
         texts: the texts of the open files.
         file: a file of parameters, a configuration or a description.
     """
-    known = _robots.setdefault(project, {})
+    cache = _robots.setdefault(project, {})
     robots: list[_Robot] = []
     begin = time.monotonic()
     for entry in _likely_robots(project, texts, file):
-        robot = known.get(entry)
+        robot = cache.get(entry)
         if robot is None or robot.state != _state((path for path, _ in robot.state), texts):
             if time.monotonic() - begin > _MAX_SECONDS:
                 break  # the next request continues
-            robot = known[entry] = _read(project, texts, entry)
+            robot = cache[entry] = _read(project, texts, entry)
         robots.append(robot)
-    found: dict[tuple[NameKind, str], NameDefinition] = {}
+    names: dict[tuple[NameKind, str], NameDefinition] = {}
     for robot in sorted(robots, key=lambda robot: file.name not in robot.texts):
         for name in robot.names:
-            found.setdefault((name.kind, name.name), name)
-    return list(found.values())
+            names.setdefault((name.kind, name.name), name)
+    return list(names.values())
 
 
 def _likely_robots(project: Workspace, texts: Mapping[Path, str], file: Path) -> list[Path]:

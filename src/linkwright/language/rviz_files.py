@@ -4,11 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
-from functools import cache
 from inspect import cleandoc
 from pathlib import Path
-from typing import Any
 
 from linkwright.diagnostics import phrase
 from linkwright.diagnostics.translation import localized
@@ -18,22 +15,26 @@ from linkwright.language.format import Document, Format, Target
 from linkwright.language.hover import Explanation
 from linkwright.language.parameter_files import part_explanation, target_of, word_at
 from linkwright.language.robot_names import robot_names
-from linkwright.language.yaml_outline import Place, YamlCursor, YamlEntry, YamlOutline
+from linkwright.language.rviz_owners import (
+    DISPLAYS,
+    OPTIONS,
+    PANELS,
+    ConfigOwner,
+    display_class,
+    display_schema,
+    owner_of,
+)
+from linkwright.language.yaml_outline import Place, YamlCursor, YamlOutline
 from linkwright.language.yaml_symbols import by_typed, has_colon, snippet_text, yaml_symbols
 from linkwright.loading.extensions import extensions
 from linkwright.rviz.config.former_names import modern_class
-from linkwright.rviz.config.rviz_config import GLOBAL_OPTIONS
-from linkwright.rviz.config.schema import FIXED_FRAME, PropertySpec, Schema, to_text
+from linkwright.rviz.config.schema import FIXED_FRAME, PropertySpec, to_text
 from linkwright.rviz.config.tools import TOOL_KINDS
 from linkwright.rviz.config.views import ORBIT, VIEW_SCHEMAS
 
-_DISPLAYS = "linkwright.displays"
-_LISTS = ("Displays", "Tools", "Panels", "Saved")
-_PANELS = ("Displays", "Selection", "Tool Properties", "Views", "Time", "Transformation")
 _USUAL = ("RobotModel", "TF", "LaserScan", "Map", "PointCloud2", "Image", "Path", "Odometry", "MarkerArray", "Grid")
 """The displays that most configurations have, offered first."""
 _FRAMES = ("map", "odom", "world")
-_OPTIONS = "Global Options"
 _TOPICS = {
     "nav_msgs/msg/OccupancyGrid": "/map",
     "nav_msgs/msg/Odometry": "/odom",
@@ -45,153 +46,7 @@ _TOPICS = {
     "visualization_msgs/msg/MarkerArray": "/visualization_marker_array",
 }
 """The usual topic of some message types."""
-_TOPIC = re.compile(r"(?m)^\s*(?:Value|Topic|[\w ]*Topic): (/[\w/]+)\s*$")
-_COMMON: Schema = (
-    PropertySpec("Class", "string", "", "The class."),
-    PropertySpec("Name", "string", "", "The name in the panel."),
-    PropertySpec("Enabled", "bool", True, "Whether the display is drawn."),
-    PropertySpec("Value", "bool", True, "The same as Enabled."),
-)
-_TOP: Schema = (
-    PropertySpec("Panels", "group", description="The panels of the window."),
-    PropertySpec("Visualization Manager", "group", description="The displays, tools, views and options."),
-    PropertySpec("Window Geometry", "group", description="The size and layout of the window."),
-)
-_WINDOW: Schema = (
-    PropertySpec("Height", "int", 846, "The height of the window, in pixels."),
-    PropertySpec("Width", "int", 1200, "The width of the window, in pixels."),
-    PropertySpec("X", "int", 0, "The left edge of the window, in pixels."),
-    PropertySpec("Y", "int", 0, "The upper edge of the window, in pixels."),
-    PropertySpec("Hide Left Dock", "bool", False, "Whether the panels on the left are hidden."),
-    PropertySpec("Hide Right Dock", "bool", False, "Whether the panels on the right are hidden."),
-    PropertySpec("QMainWindow State", "string", "", "The layout of the panels, as Qt writes it."),
-    PropertySpec("collapsed", "bool", False, "Whether the panel is hidden."),
-    *(PropertySpec(name, "group", description="Whether the panel is hidden.") for name in _PANELS),
-)
-_PANEL: Schema = (
-    PropertySpec("Class", "string", "", "The class."),
-    PropertySpec("Name", "string", "", "The name of the panel."),
-    PropertySpec("Help Height", "int", 78, "The height of the help, in pixels."),
-    PropertySpec("Property Tree Widget", "group", description="The rows that are open, and the width of the columns."),
-    PropertySpec("Tree Height", "int", 549, "The height of the tree, in pixels."),
-    PropertySpec("Expanded", "group", description="The open rows."),
-    PropertySpec("Splitter Ratio", "float", 0.5, "The width of the first column, from 0 to 1."),
-    PropertySpec("Experimental", "bool", False, "Whether the panel shows experimental settings."),
-    PropertySpec("SyncMode", "int", 0, "How displays are synchronized: 0 for off, 1 for exact, 2 for approximate."),
-    PropertySpec("SyncSource", "string", "", "The display that the time follows."),
-)
-_LINK: Schema = (
-    PropertySpec("Alpha", "float", 1.0, "Opacity: 0 is invisible.", minimum=0.0, maximum=1.0),
-    PropertySpec("Show Axes", "bool", False, "Draw the axes of the link's frame."),
-    PropertySpec("Show Trail", "bool", False, "Draw the way of the link's frame."),
-    PropertySpec("Value", "bool", True, "Whether it is drawn."),
-)
-_OF_FRAMES: Schema = (
-    PropertySpec("Frames", "group", description="Which frames are drawn."),
-    PropertySpec("Tree", "group", description="The tree of the frames."),
-)
-_MANAGER: Schema = (
-    PropertySpec("Displays", "group", description="The displays, from the first to the last that is drawn."),
-    PropertySpec(_OPTIONS, "group", description="The Fixed Frame, the background and the frame rate."),
-    PropertySpec("Tools", "group", description="The tools of the toolbar."),
-    PropertySpec("Views", "group", description="The current view and the saved ones."),
-    PropertySpec("Transformation", "group", description="The plugin that transforms between frames."),
-    *_COMMON,
-)
-
-
-@dataclass(frozen=True, slots=True)
-class _Owner:
-    """The display, tool, view or group of options that a place of a configuration belongs to.
-
-    Attributes:
-        role: ``Displays``, ``Tools``, ``Views``, ``Panels`` or ``Global Options``; empty for the frame of the file.
-        entry: the entry of the display, tool or view.
-        keys: the keys from the entry to the place.
-    """
-
-    role: str
-    entry: YamlEntry
-    keys: tuple[str, ...] = ()
-
-    @property
-    def class_name(self) -> str:
-        """RViz 2's name of the class; empty if it is not written yet."""
-        written = self.entry.child("Class")
-        return "" if written is None else modern_class(written.scalar)
-
-    @property
-    def schema(self) -> Schema:
-        """The properties at the place."""
-        if self.role == "Displays" and self.keys[-2:-1] in (("Links",), ("Frames",)):
-            return _LINK if self.keys[-2] == "Links" else _LINK[-1:]
-        if self.role == "Displays" and self.keys[-1:] == ("Frames",):
-            return (PropertySpec("All Enabled", "bool", True, "Whether all frames are drawn."),)
-        specs = self._specs
-        for key in self.keys if self.role != "Panels" else ():
-            specs = next((spec.children for spec in specs if spec.name == key), ())
-        return specs
-
-    @property
-    def _specs(self) -> Schema:
-        if self.role == _OPTIONS:
-            return GLOBAL_OPTIONS
-        if self.role == "Displays":
-            return (*_COMMON[:2], *_display_schema(self.class_name), *_COMMON[2:])
-        if self.role == "Tools":
-            tool = TOOL_KINDS.get(self.class_name)
-            return (_COMMON[0], *(() if tool is None else tool.schema))
-        if self.role == "Views":
-            value = PropertySpec("Value", "string", "", "The class and the package of the view.")
-            return (*_COMMON[:2], *VIEW_SCHEMAS.get(self.class_name, ()), value)
-        if self.role == "Panels":
-            return _PANEL
-        if self.entry.parent is None:
-            return _TOP
-        if self.entry.key == "Visualization Manager":
-            return _MANAGER
-        if "Window Geometry" in self.entry.path:
-            return _WINDOW
-        return (PropertySpec("Current", "group"), PropertySpec("Saved", "group")) if self.entry.key == "Views" else ()
-
-    def spec(self, key: str) -> PropertySpec | None:
-        """Return the property with a key at the place; the value of a property with children has the key ``Value``."""
-        if key == "Value" and self.keys and self.keys[-2:-1] not in (("Links",), ("Frames",)):
-            return _Owner(self.role, self.entry, self.keys[:-1]).spec(self.keys[-1])
-        return next((spec for spec in self.schema if spec.name == key), None)
-
-
-def _owner_of(entry: YamlEntry) -> _Owner:
-    """Return the display, tool, view or group that the content of an entry belongs to."""
-    keys: list[str] = []
-    current = entry
-    while current.parent is not None:
-        above = current.parent
-        if current.is_item and above.key in _LISTS:
-            return _Owner("Views" if above.key == "Saved" else above.key, current, tuple(reversed(keys)))
-        if current.key == "Current" and above.key == "Views":
-            return _Owner("Views", current, tuple(reversed(keys)))
-        if current.key == _OPTIONS:
-            return _Owner(_OPTIONS, current, tuple(reversed(keys)))
-        if current.key:
-            keys.append(current.key)
-        current = above
-    return _Owner("", entry)
-
-
-@cache
-def _display(name: str) -> Any:
-    """Return the class of a display, or None if it cannot be imported."""
-    entry = extensions(_DISPLAYS).get(name)
-    try:
-        return None if entry is None else entry.load()
-    except Exception:  # noqa: BLE001  # of a package that is not ours anything may be wrong
-        return None
-
-
-def _display_schema(name: str) -> Schema:
-    schema: Schema = getattr(_display(name), "SCHEMA", ())
-    return (*schema, *_OF_FRAMES) if name == "rviz_default_plugins/TF" else schema
+_TOPIC = re.compile(r"(?m)^[ \t]{0,99}(?:Value|Topic|[\w ]{0,60}Topic): (/[\w/]+)[ \t\r]{0,20}$")
 
 
 # --- completions ------------------------------------------------------------------------------------------------------
@@ -207,19 +62,19 @@ def complete_rviz(document: Document, offset: int) -> list[Completion]:
 
 
 def _keys(document: Document, cursor: YamlCursor) -> Iterator[Completion]:
-    owner = _owner_of(cursor.within)
-    taken = {child.key for child in cursor.within.children if child is not cursor.entry}
+    owner = owner_of(cursor.within)
+    present = {child.key for child in cursor.within.children if child is not cursor.entry}
     has_value = has_colon(document.text, cursor.offset)
     specs = owner.schema
-    here = _Owner(owner.role, owner.entry, owner.keys[:-1]).spec(owner.keys[-1]) if owner.keys else None
+    here = ConfigOwner(owner.role, owner.entry, owner.keys[:-1]).spec(owner.keys[-1]) if owner.keys else None
     if here is not None and here.children and here.kind != "group":
         specs = (PropertySpec("Value", here.kind, here.default, here.description, here.options), *specs)
     for spec in specs:
-        if spec.name not in taken and not spec.read_only:
+        if spec.name not in present and not spec.read_only:
             yield _property(spec, cursor.start, has_value=has_value)
     if owner.keys[-1:] in (("Links",), ("Frames",)):
         for name in robot_names(document.project, document.texts, document.file):
-            if name.kind is NameKind.LINK and name.name not in taken:
+            if name.kind is NameKind.LINK and name.name not in present:
                 snippet = "" if has_value else f"{snippet_text(name.name)}:\n  $0"
                 yield Completion(name.name, ItemKind.NAME, cursor.start, name.file.name, "", snippet)
 
@@ -259,7 +114,7 @@ def _values(document: Document, cursor: YamlCursor) -> Iterator[Completion]:
     parent = cursor.within.parent
     if parent is None:
         return
-    owner, key = _owner_of(parent), cursor.within.key
+    owner, key = owner_of(parent), cursor.within.key
     if key == "Class":
         for name, purpose in _classes(owner):
             yield Completion(name, ItemKind.VALUE, cursor.start, "", purpose)
@@ -277,9 +132,9 @@ def _values(document: Document, cursor: YamlCursor) -> Iterator[Completion]:
     for word in words:
         yield Completion(word, ItemKind.VALUE, cursor.start, localized(phrase("default")) if word == default else "")
     if spec.kind == "frame":
-        yield from _frames(document, cursor.start, with_fixed=owner.role != _OPTIONS)
+        yield from _frames(document, cursor.start, with_fixed=owner.role != OPTIONS)
     elif spec.kind == "topic" or spec.name.endswith("Topic"):
-        message = getattr(_display(owner.class_name), "MESSAGE", "")
+        message = getattr(display_class(owner.class_name), "MESSAGE", "")
         _, _, typed = word_at(document.text, cursor)
         others = (topic for topic in _topics(document) if topic != typed or typed == _TOPICS.get(message))
         for topic in dict.fromkeys((*filter(None, (_TOPICS.get(message), default)), *others)):
@@ -288,18 +143,18 @@ def _values(document: Document, cursor: YamlCursor) -> Iterator[Completion]:
         yield Completion(default, ItemKind.VALUE, cursor.start, localized(phrase("default")))
 
 
-def _usual_name(owner: _Owner) -> str:
+def _usual_name(owner: ConfigOwner) -> str:
     """Return the name that RViz gives to a display, tool, view or panel."""
     if owner.role == "Views":
         return "Current View" if owner.entry.key == "Current" else owner.class_name.rpartition("/")[2]
     return owner.class_name.rpartition("/")[2] or ("root" if owner.role == "" else "")
 
 
-def _classes(owner: _Owner) -> Iterator[tuple[str, str]]:
+def _classes(owner: ConfigOwner) -> Iterator[tuple[str, str]]:
     """Yield the classes that a display, tool, view or panel may have, each with its purpose."""
     if owner.role == "Displays":
         usual = {f"rviz_default_plugins/{name}": number for number, name in enumerate(_USUAL)}
-        for name in sorted(extensions(_DISPLAYS), key=lambda name: usual.get(name, len(usual))):
+        for name in sorted(extensions(DISPLAYS), key=lambda name: usual.get(name, len(usual))):
             yield name, _purpose(name)
     elif owner.role == "Tools":
         for name, tool in TOOL_KINDS.items():
@@ -308,7 +163,7 @@ def _classes(owner: _Owner) -> Iterator[tuple[str, str]]:
         for name in sorted(VIEW_SCHEMAS, key=lambda name: name != ORBIT):
             yield name, ""
     elif owner.role == "Panels":
-        for name in _PANELS:
+        for name in PANELS:
             yield f"rviz_common/{name}", ""
 
 
@@ -316,7 +171,7 @@ def _purpose(name: str) -> str:
     """Return the first paragraph about a class of displays, tools or views; empty if there is none."""
     if name in TOOL_KINDS:
         return TOOL_KINDS[name].name
-    display = _display(name)
+    display = display_class(name)
     return "" if display is None else cleandoc(display.__doc__ or "").partition("\n\n")[0]
 
 
@@ -332,7 +187,7 @@ def _frames(document: Document, start: int, *, with_fixed: bool) -> Iterator[Com
 
 def _topics(document: Document) -> Iterator[str]:
     """Yield the topics that the configuration itself names."""
-    yield from dict.fromkeys(found[1] for found in _TOPIC.finditer(document.text))
+    yield from dict.fromkeys(match[1] for match in _TOPIC.finditer(document.text))
 
 
 # --- explanations and definitions -------------------------------------------------------------------------------------
@@ -345,13 +200,13 @@ def explain_rviz(document: Document, offset: int) -> Explanation | None:
     if not word:
         return None
     if cursor.place is Place.KEY:
-        owner = _owner_of(cursor.within)
+        owner = owner_of(cursor.within)
         text = _explained(owner, word)
         if not text and {"Links", "Frames", "Tree"} & set(owner.keys):
             text = part_explanation(document, word, (NameKind.LINK,))
     else:
         parent = cursor.within.parent
-        owner = _owner_of(parent if parent is not None else cursor.within)
+        owner = owner_of(parent if parent is not None else cursor.within)
         key = cursor.within.key
         spec = owner.spec(key)
         text = ""
@@ -363,7 +218,7 @@ def explain_rviz(document: Document, offset: int) -> Explanation | None:
     return Explanation(text, start, end) if text else None
 
 
-def _explained(owner: _Owner, key: str) -> str:
+def _explained(owner: ConfigOwner, key: str) -> str:
     if key == "Class":
         return _explained_class(owner.class_name)
     spec = owner.spec(key)
@@ -372,7 +227,7 @@ def _explained(owner: _Owner, key: str) -> str:
 
 def _explained_class(name: str) -> str:
     purpose = _purpose(name)
-    schema = _display_schema(name) or VIEW_SCHEMAS.get(name, ())
+    schema = display_schema(name) or VIEW_SCHEMAS.get(name, ())
     properties = ", ".join(f"`{spec.name}`" for spec in schema)
     return "\n\n".join(part for part in (f"**{name}**", purpose, properties) if part) if name else ""
 
@@ -386,7 +241,7 @@ def define_in_rviz(document: Document, offset: int) -> Iterator[Target]:
     keys = cursor.within.path
     names_link = bool({"Links", "Frames", "Tree"} & set(keys))
     if cursor.place is Place.VALUE and cursor.within.parent is not None:
-        spec = _owner_of(cursor.within.parent).spec(cursor.within.key)
+        spec = owner_of(cursor.within.parent).spec(cursor.within.key)
         names_link = spec is not None and spec.kind == "frame"
     for name in robot_names(document.project, document.texts, document.file) if names_link else ():
         if name.kind is NameKind.LINK and name.name == word:

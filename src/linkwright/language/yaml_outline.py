@@ -342,7 +342,7 @@ def _flow_items(value: str, start: int) -> Iterator[tuple[str, int]]:
 
 
 def _flow_item(value: str, begin: int, end: int, start: int) -> Iterator[tuple[str, int]]:
-    text = re.sub(r"^(\s*#[^\n]*\n)*\s*", lambda found: " " * len(found[0]), value[begin:end])
+    text = re.sub(r"^(\s*#[^\n]*\n)*\s*", lambda match: " " * len(match[0]), value[begin:end])
     if text.strip():
         inner = text.strip()
         quoted = inner[0] in "\"'"
