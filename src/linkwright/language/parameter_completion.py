@@ -228,7 +228,7 @@ def _manager_keys(section: Section, cursor: YamlCursor, colon: str) -> Iterator[
             yield _key(cursor, "type", "string", text, colon and "type: $0")
         return
     present = {child.key for child in cursor.within.children}
-    for kind in sorted(controller_types(), key=lambda kind: kind not in _USUAL_CONTROLLERS):
+    for kind in dict.fromkeys((*_USUAL_CONTROLLERS, *controller_types())):
         package, _, name = kind.partition("/")
         if package.endswith("controllers"):
             package = re.sub(r"(?<!^)(?=[A-Z])", "_", name).lower()
