@@ -1,6 +1,7 @@
 /** The names of the files that the language server reads, whatever language VS Code gives them. */
 export const FILES =
-  "**/{*.xacro,*.urdf,*.sdf,*.world,*.srdf,*.launch,*.launch.xml,*.launch.py,*_launch.py,*.launch.yaml,package.xml,model.config,*.msg,*.srv,*.action}";
+  "**/{*.xacro,*.urdf,*.sdf,*.world,*.srdf,*.launch,*.launch.xml,*.launch.py,*_launch.py,*.launch.yaml,package.xml," +
+  "model.config,*.msg,*.srv,*.action}";
 
 /** The documents that VS Code sends to the language server. */
 export const DOCUMENTS = [
