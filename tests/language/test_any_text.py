@@ -112,9 +112,27 @@ VIEWER = """Visualization Manager:
     Current:
       Class: rviz_default_plugins/Orbit
 """
-OWN = [("launch/a.launch.xml", LAUNCH), ("launch/a.launch.py", PYTHON), ("srv/A.srv", MESSAGE)]
+ACTIONS = """launch:
+- arg: {name: a, default: "$(dirname)/urdf"}
+- node:
+    pkg: my_robot_description
+    param:
+    - from: "$(var a)/m.yaml"
+- group:
+  - include:
+      file: $(find-pkg-share ros_gz_sim)/launch/gz_sim.launch.py
+      arg:
+      - name: gz_args
+        value: 'b'
+"""
+OWN = [
+    ("launch/a.launch.xml", LAUNCH),
+    ("launch/a.launch.py", PYTHON),
+    ("srv/A.srv", MESSAGE),
+    ("a.launch.yaml", ACTIONS),
+]
 OWN += [("config/a.srdf", SEMANTICS), ("config/a.srdf.xacro", SEMANTICS), ("package.xml", PACKAGE)]
-OWN += [("config/a.yaml", PARAMETERS), ("rviz/a.rviz", VIEWER)]
+OWN += [("a.launch.yaml", ACTIONS), ("config/a.yaml", PARAMETERS), ("rviz/a.rviz", VIEWER)]
 MARKS = st.text("<>/=\"' ${}()[],.:#\\n\n机a-@", max_size=8)
 
 

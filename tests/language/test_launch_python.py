@@ -117,3 +117,24 @@ def test_a_dependency_that_is_not_found_is_offered(at):
     manifest = at("|").document.file.parents[1] / "package.xml"
     manifest.write_text(manifest.read_text().replace("</package>", "<exec_depend>far_away</exec_depend></package>"))
     assert "far_away" in at("Node(package='|')").labels()[:3]
+
+
+def test_classes_of_launch_and_their_arguments_are_explained(at):
+    assert at("No|de(package='a')").hover().startswith("**Node**: Starts a node.")
+    assert at("Node(pack|age='a')").hover() == "`package`: the package of the executable."
+    assert "package" in at("Node(|").labels()[0]
+    assert at("Node(package='a', exec|").labels()[0] == "executable="
+    assert at("Node(package='a', parameters=[{|").labels() == []
+    assert at("DeclareLaunchArgument('a', |)").labels()[:2] == ["default_value=", "description="]
+    assert at("f(|)").labels() == []
+
+
+def test_a_configuration_in_a_path_has_its_default(at):
+    declared = "DeclareLaunchArgument('package', default_value='lamp_bringup')\np = LaunchConfiguration('package')\n"
+    assert at(f"{declared}PathJoinSubstitution([FindPackageShare(p), 'config', '|'])").labels() == ["lamp.yaml"]
+
+
+def test_a_value_is_explained_by_its_argument(at):
+    assert "Its colour" in at(INCLUDE.format("{'colour': 're|d'}.items()")).hover()
+    assert at("Node(name='ab|c')").hover() == "`name`: the name to give to the node."
+    assert at("Node(package='nowh|ere')").hover() == "package 'nowhere' not found"

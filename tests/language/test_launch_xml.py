@@ -8,7 +8,10 @@ import pytest
 
 from linkwright.language.launch_schema import LAUNCH
 from linkwright.launch.frontend.extensions import ACTIONS, load
+from linkwright.launch.frontend.xml import Entity, Parser
 from linkwright.launch.model.markup.expose import action_parse_methods
+from linkwright.schema import ElementRule
+from linkwright.xmltree import parse
 from tests.language.formats import Place, make_packages
 
 
@@ -21,6 +24,37 @@ def at(tmp_path: Path):
 def test_the_table_has_the_tags_of_the_actions():
     assert list(load(ACTIONS))
     assert {*action_parse_methods} - {"push-ros-namespace"} <= {*LAUNCH.child_rules}
+
+
+VALUES = {"true or false": "true", "number": "1.0", "integer": "1", "level of a log": "info"}
+
+
+def written(rule: ElementRule) -> str:
+    """Return an element with the attributes that it needs."""
+    needed = [attribute for attribute in rule.attributes if attribute.required]
+    attributes = "".join(f' {each.name}="{VALUES.get(each.type.name, "a")}"' for each in needed)
+    return f"<{rule.tag}{attributes}/>"
+
+
+@pytest.mark.parametrize("tag", sorted(LAUNCH.child_rules))
+def test_the_table_has_the_attributes_that_an_action_reads(tag, monkeypatch):
+    asked: set[str] = set()
+    read = Entity.get_attr
+
+    def recording(entity: Entity, name: str, **options):
+        if entity.parent is None:
+            asked.add(name)
+        return read(entity, name, **options)
+
+    monkeypatch.setattr(Entity, "get_attr", recording)
+    assert list(load(ACTIONS))
+    rule = LAUNCH.child_rules[tag]
+    children = "".join(map(written, rule.children)) if tag in ("load_composable_node", "rep_env") else ""
+    text = written(rule).replace("/>", f">{children}</{tag}>")
+    Parser().parse_action(Entity(parse(text, "a.launch.xml").root))
+    of_python_or_yaml = {"choices", "level"} if tag in ("arg", "bool_arg") or tag.startswith("log_") else set()
+    assert asked <= {*rule.attribute_rules, *rule.child_rules, "choice"} | of_python_or_yaml
+    assert {*rule.attribute_rules} <= asked
 
 
 def test_elements_and_attributes_come_from_the_table(at):

@@ -14,7 +14,7 @@ XML = """<launch>
 PYTHON = """def generate_launch_description():
     arm = get_package_share_directory('arm_description')
     return LaunchDescription([DeclareLaunchArgument('speed', default_value='1'),
-        Node(package='█', name=LaunchConfiguration('speed'))])
+        Node(package='█', name='arm')])
 """
 
 
@@ -66,4 +66,16 @@ async def test_links_and_symbols_of_launch_files(editor):
     assert link.target == editor.uri("launch/other.launch.py")
     asked = opened(editor, "launch/b.launch.py", PYTHON)
     found = await editor.client.text_document_document_symbol_async(types.DocumentSymbolParams(asked.text_document))
-    assert [symbol.name for symbol in found] == ["arg speed", "Node"]
+    assert [symbol.name for symbol in found] == ["arg speed", "Node arm"]
+
+
+async def test_references_and_highlights_of_an_argument(editor):
+    asked = opened(editor, "launch/a.launch.xml", XML)
+    found = await editor.client.text_document_references_async(
+        types.ReferenceParams(types.ReferenceContext(include_declaration=True), asked.text_document, asked.position)
+    )
+    assert [place.range.start.line for place in found] == [1, 2]
+    found = await editor.client.text_document_document_highlight_async(
+        types.DocumentHighlightParams(asked.text_document, asked.position)
+    )
+    assert [place.range.start.line for place in found] == [1, 2]

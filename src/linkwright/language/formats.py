@@ -8,6 +8,7 @@ from linkwright.language.format import Format
 from linkwright.language.interfaces import INTERFACES
 from linkwright.language.launch_python import LAUNCH_PYTHON
 from linkwright.language.launch_xml import LAUNCH_XML
+from linkwright.language.launch_yaml import LAUNCH_YAML
 from linkwright.language.manifest import PACKAGE_XML
 from linkwright.language.parameter_files import PARAMETER_FILES
 from linkwright.language.rviz_files import RVIZ_FILES
@@ -16,6 +17,7 @@ from linkwright.language.srdf import SRDF_FILES
 FORMATS: tuple[Format, ...] = (
     LAUNCH_XML,
     LAUNCH_PYTHON,
+    LAUNCH_YAML,
     INTERFACES,
     PACKAGE_XML,
     SRDF_FILES,

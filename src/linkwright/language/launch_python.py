@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
 from linkwright.language.completion import Completion, ItemKind
+from linkwright.language.cursor import name_at
 from linkwright.language.format import Document, Format, Symbol, SymbolKind, Target
 from linkwright.language.hover import Explanation
 from linkwright.language.launch_arguments import LaunchArgument, arguments_in, likely_values
+from linkwright.language.launch_classes import class_arguments, described_class, first_argument
 from linkwright.language.links import FileReference
 from linkwright.language.offers import (
     explain_file,
@@ -36,6 +39,7 @@ _CONFIGURATIONS = frozenset({"LaunchConfiguration", "LaunchConfigurationEquals",
 _ACTIONS = ("Node", "LifecycleNode", "ComposableNode", "ComposableNodeContainer", "IncludeLaunchDescription")
 _OUTPUTS = ("screen", "log", "both", "own_log", "full")
 _URI = "package://"
+_WORD_BEFORE = re.compile(r"[^\W\d]\w*\Z")
 
 
 def is_python_launch_file(path: Path) -> bool:
@@ -71,7 +75,8 @@ class _LaunchText:
     def __init__(self, document: Document) -> None:
         self.document = document
         self.python = PythonText(document.text)
-        self.paths = PythonPaths(self.python, document.file, document.finder)
+        texts = {each.name: each.default for each in self.arguments if each.default and "(" not in each.default}
+        self.paths = PythonPaths(self.python, document.file, document.finder, texts)
 
     @cached_property
     def arguments(self) -> tuple[LaunchArgument, ...]:
@@ -140,7 +145,8 @@ class _LaunchText:
             return None
         argument = next((each for each in declared if each.name == name), None)
         choices = () if argument is None else likely_values(argument, name, self.document.text)
-        return _Place("choice", text, base=self.paths.before(text, item), choices=choices)
+        known = () if argument is None else (argument,)
+        return _Place("choice", text, None, known, self.paths.before(text, item), choices)
 
     def included_file(self, include: Group) -> Path | None:
         """Return the file that an ``IncludeLaunchDescription`` includes, if it is known and exists."""
@@ -188,6 +194,7 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
     launch = _LaunchText(document)
     place = launch.place_at(offset)
     if place is None:
+        yield from _keywords(launch, offset)
         return
     start = place.text.start
     if place.kind == "package":
@@ -234,40 +241,76 @@ def _explain(document: Document, offset: int) -> Explanation | None:
     place = launch.place_at(offset)
     if place is None:
         return _explain_name(launch, offset)
-    value, text = place.text.value, None
-    if place.kind == "package":
-        text = explain_package(document, value)
-    elif place.kind == "program":
-        text = explain_program(document, place.package, value)
-    elif place.kind in ("configuration", "argument"):
-        text = "\n\n".join(argument.described() for argument in place.arguments if argument.name == value)
-    else:
-        path = launch.path_until(place, offset)
-        file = None if path is None else launch.file_of(path)
-        if file is not None:
-            text = explain_file(file)
-        elif place.base is not None and place.base.is_path and path is not None:
-            text = explain_file(Path(path))
+    text = _explanation(launch, place, offset) or _explain_argument(launch, place)
     return Explanation(text, place.text.start, place.text.end) if text else None
 
 
+def _explanation(launch: _LaunchText, place: _Place, offset: int) -> str | None:
+    value = place.text.value
+    if place.kind == "package":
+        return explain_package(launch.document, value)
+    if place.kind == "program":
+        return explain_program(launch.document, place.package, value)
+    if place.kind in ("configuration", "argument"):
+        return "\n\n".join(argument.described() for argument in place.arguments if argument.name == value)
+    path = launch.path_until(place, offset)
+    file = None if path is None else launch.file_of(path)
+    if file is not None and (place.base is not None or "/" in value):
+        return explain_file(file)
+    is_path = place.base is not None and place.base.is_path and path is not None
+    return explain_file(Path(path or "")) if is_path else None
+
+
+def _explain_argument(launch: _LaunchText, place: _Place) -> str | None:
+    """Explain the argument that a string is the value of: of an included file, or of a class of launch."""
+    if place.kind == "choice" and place.arguments:
+        return place.arguments[0].described()
+    found = launch.python.string_at(place.text.start)
+    if found is None or not found[1].keyword:
+        return None
+    meaning = class_arguments(found[1].group.function).get(found[1].keyword)
+    return f"`{found[1].keyword}`: {meaning}" if meaning else None
+
+
+def _keywords(launch: _LaunchText, offset: int) -> Iterator[Completion]:
+    """Yield the arguments of the call around an offset that are not given yet."""
+    text = launch.document.text
+    typed = _WORD_BEFORE.search(text, text.rfind("\n", 0, offset) + 1, offset)
+    call = launch.python.call_at(offset)
+    start = offset if typed is None else typed.start()
+    if call is None or not text[:start].rstrip().endswith(("(", ",")):
+        return
+    if any(item.start <= start and item.parts for item in call.items if _group_around(item, start) is not None):
+        return
+    given = {item.keyword for item in call.items}
+    if call.items[0].parts and not call.items[0].keyword and text[:start].rstrip().endswith(","):
+        given.add(first_argument(call.function) or "")
+    for name, meaning in class_arguments(call.function).items():
+        if name not in given:
+            yield Completion(f"{name}=", ItemKind.ATTRIBUTE, start, call.function, meaning)
+
+
+def _group_around(item: Item, offset: int) -> Group | None:
+    """Return the brackets directly in an item that contain an offset, or None if there are none."""
+    groups = (part for part in item.parts if isinstance(part, Group))
+    return next((group for group in groups if group.start < offset < group.end), None)
+
+
 def _explain_name(launch: _LaunchText, offset: int) -> Explanation | None:
-    """Explain the path in a variable at an offset."""
-    for item in _items(launch.python.root):
-        for part in item.parts:
-            if isinstance(part, Name) and part.start <= offset <= part.end:
-                value = launch.paths.value_of(Item(item.group, part.start, parts=[part]))
-                text = None if value is None or not value.is_path else explain_file(Path(value.text))
-                return Explanation(text, part.start, part.end) if text else None
-    return None
-
-
-def _items(root: Group) -> Iterator[Item]:
-    pending = [root]
-    while pending:
-        for item in pending.pop().items:
-            yield item
-            pending += [part for part in item.parts if isinstance(part, Group)]
+    """Explain the class, argument or path in a variable at an offset."""
+    found = name_at(launch.document.text, offset)
+    if found is None:
+        return None
+    name, start = found
+    call = launch.python.call_at(offset)
+    text = described_class(name.rpartition(".")[2])
+    if text is None and call is not None and any(item.keyword == name for item in call.items):
+        meaning = class_arguments(call.function).get(name)
+        text = f"`{name}`: {meaning}" if meaning else None
+    if text is None:
+        value = launch.paths.value_of(Item(launch.python.root, start, parts=[Name(name, start)]))
+        text = explain_file(Path(value.text)) if value is not None and value.is_path else None
+    return Explanation(text, start, start + len(name)) if text else None
 
 
 def _define(document: Document, offset: int) -> Iterator[Target]:

@@ -91,6 +91,9 @@ _NODE = (
     _one("ros_args", _TEXT, "the arguments after --ros-args"),
     _one("exec_name", _NAME, "the name of the process in the log"),
 )
+_NAMED_NODE = tuple(
+    _required(rule.name, rule.type, rule.meaning) if rule.name in ("name", "namespace") else rule for rule in _NODE
+)
 _IN_NODE = (_PARAM, _REMAP, _ENV)
 _COMPOSABLE = _action(
     "composable_node",
@@ -180,7 +183,7 @@ _PLAIN = (
     _action(
         "node_container",
         "starts a container and loads nodes into it",
-        *_NODE,
+        *_NAMED_NODE,
         children=(_COMPOSABLE, *_IN_NODE),
     ),
     _action(
@@ -192,7 +195,7 @@ _PLAIN = (
     _action(
         "lifecycle_node",
         "starts a managed node",
-        *_NODE,
+        *_NAMED_NODE,
         _one("autostart", _TRUTH, "whether the node is configured and activated", "false"),
         children=_IN_NODE,
     ),
@@ -214,7 +217,7 @@ _PLAIN = (
     _action("rep_env", "replaces all environment variables", children=(_ENV,)),
     _action("push_env", "saves the environment variables"),
     _action("pop_env", "restores the environment variables that push_env has saved"),
-    _action("reset_env", "restores the environment variables of the start", children=(_ENV,)),
+    _action("reset_env", "restores the environment variables of the start"),
     _action("unset", "removes a launch configuration", _required("name", _NAME, "the name in $(var NAME)")),
     _action(
         "reset",
@@ -275,6 +278,8 @@ _PLAIN = (
         _required("config_file", _PATH, "the YAML file with the topics"),
         _one("namespace", _NAME, "the namespace of the node"),
         _one("log_level", ValueType("level of a log"), "the level", "info"),
+        _one("use_respawn", _TRUTH, "whether the process is started again when it ends", "false"),
+        _one("bridge_params", _TEXT, "further parameters of the node"),
         *_GZ_CONTAINER,
         children=(_PARAM,),
     ),

@@ -11,6 +11,7 @@ from linkwright.language.completion import Completion, ItemKind
 from linkwright.language.facts import mesh_facts, package_facts
 from linkwright.language.format import Document, Target
 from linkwright.language.programs import components_of, package_names, programs_of, replaced_packages
+from linkwright.messages.definitions.interfaces import is_package_name
 from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.share_layout import source_of
 
@@ -70,9 +71,11 @@ def offer_files(base: Path, typed: str, offset: int, *, launch_files: bool = Fal
 
 
 def explain_package(document: Document, name: str) -> str | None:
-    """Return the description and folder of a package, in Markdown; None if there is no such package."""
+    """Return the description and folder of a package, or that it is not found, in Markdown; None for other texts."""
     folder = document.finder.find(name)
-    if folder is not None and not folder.is_dir():
+    if folder is None:
+        return localized(phrase("package '{name}' not found", name=name)) if is_package_name(name) else None
+    if not folder.is_dir():
         return localized(phrase("**{name}**: nodes and modules of Linkwright replace this package", name=name))
     return package_facts(document.finder, name)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,7 +14,7 @@ SHARES = frozenset({"get_package_share_directory", "get_package_share_path", "Fi
 _PREFIXES = frozenset({"get_package_prefix", "FindPackagePrefix"})
 PACKAGE_FUNCTIONS = SHARES | _PREFIXES
 """The functions whose argument is a package."""
-JOINS = frozenset({"join", "Path", "PurePath"})
+JOINS = frozenset({"join", "Path", "PurePath", "PathSubstitution"})
 """The functions that join their arguments to a path."""
 _WRAPPERS = frozenset(
     {
@@ -47,10 +47,14 @@ class PythonPaths:
         python: the text.
         file: its file.
         finder: finds packages.
+        defaults: name -> value of launch configurations.
     """
 
-    def __init__(self, python: PythonText, file: Path, finder: PackageFinder) -> None:
+    def __init__(
+        self, python: PythonText, file: Path, finder: PackageFinder, defaults: Mapping[str, str] | None = None
+    ) -> None:
         self._python = python
+        self._defaults = defaults or {}
         self._file = file
         self._finder = finder
 
@@ -151,6 +155,10 @@ class PythonPaths:
             package = self._value((group.argument("package", 0) or Item(group, 0)).parts, depth + 1)
             share = None if package is None else self._finder.find(package.text)
             return None if share is None or function in _PREFIXES else Value(str(share), is_path=True)
+        if function == "LaunchConfiguration" and items:
+            name = self._value(items[0].parts, depth + 1)
+            default = None if name is None else self._defaults.get(name.text)
+            return None if default is None else Value(default)
         if function == "ThisLaunchFileDir":
             return Value(str(self._file.parent), is_path=True)
         if function == "dirname" and items:

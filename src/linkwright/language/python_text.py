@@ -105,7 +105,8 @@ class Group:
         opening: the opening bracket; empty for the whole text.
         callee: the name before the bracket of a call, or empty.
         start: the offset of the opening bracket.
-        end: the offset behind the closing bracket.
+        end: the offset behind the closing bracket, or where the brackets end without one.
+        is_closed: whether there is a closing bracket.
         items: the parts between commas.
         parent: the item that contains the brackets; None for the whole text.
     """
@@ -116,6 +117,7 @@ class Group:
     end: int = 0
     items: list[Item] = field(default_factory=list)
     parent: Item | None = None
+    is_closed: bool = False
 
     @property
     def function(self) -> str:
@@ -165,6 +167,16 @@ class PythonText:
     def string_at(self, offset: int) -> tuple[Text, Item] | None:
         """Return the string around an offset with its item, or None if there is none."""
         return next((found for found in self.strings if found[0].start <= offset <= found[0].end), None)
+
+    def call_at(self, offset: int) -> Group | None:
+        """Return the innermost call whose brackets contain an offset, or None if there is none."""
+        found = None
+        for call in self.calls:
+            if call.start >= offset:
+                break
+            if offset < call.end or (offset == call.end and not call.is_closed):
+                found = call
+        return found
 
     def _read(self, text: str) -> None:
         line_begins = True
@@ -233,6 +245,7 @@ class PythonText:
             return
         while self._group is not around:
             self._leave(end)
+        around.is_closed = True
         self._leave(end)
 
     def _leave(self, end: int) -> None:

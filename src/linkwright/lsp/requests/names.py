@@ -149,9 +149,10 @@ def targets_at(own: FormattedText, place: types.Position) -> list[Target]:
     return [*own.format.define(own.document, own.positions.offset(place))]
 
 
-def _target_locations(
+def target_locations(
     targets: Iterable[Target], text_of: TextOf, uri: Callable[[Path], str]
 ) -> Iterable[types.Location]:
+    """Yield the places of targets as the protocol has them."""
     for target in targets:
         text = text_of(target.file)
         start = types.Position(0, 0)
@@ -207,7 +208,7 @@ def add_requests(server: LinkwrightServer) -> None:
         own = await server.formatted(asked.text_document)
         if own is not None:
             targets = await server.in_thread(lambda: targets_at(own, asked.position))
-            return [*_target_locations(targets, server.positions, server.uri_of)]
+            return [*target_locations(targets, server.positions, server.uri_of)]
         source = await server.in_thread(lambda: source_of(server, asked.text_document.uri, asked.position))
         path, positions = server.text(asked.text_document)
         if positions is None or server.project is None:

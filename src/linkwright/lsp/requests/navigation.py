@@ -13,6 +13,7 @@ from linkwright.language.includes import real
 from linkwright.language.links import FileReference, file_references
 from linkwright.language.occurrences import Occurrence, occurrences_in
 from linkwright.language.renaming import occurrence_at, references
+from linkwright.language.uses import uses_at
 from linkwright.lsp.positions import TextPositions
 from linkwright.lsp.server import LinkwrightServer, path_of
 
@@ -196,6 +197,12 @@ def add_requests(server: LinkwrightServer) -> None:
     def document_highlight(
         server: LinkwrightServer, asked: types.DocumentHighlightParams
     ) -> list[types.DocumentHighlight] | None:
+        own = server.document(asked.text_document)
+        if own is not None:
+            offset = own.positions.offset(asked.position)
+            uses = uses_at(own.document, own.format, offset, in_file=True)
+            if uses:
+                return [types.DocumentHighlight(own.positions.range(use.start, use.end)) for use in uses]
         path, positions = server.text(asked.text_document)
         if positions is None:
             return None
