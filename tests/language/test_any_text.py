@@ -11,12 +11,15 @@ from linkwright.language.colors import colors_in
 from linkwright.language.completion import complete
 from linkwright.language.definitions import definitions_in
 from linkwright.language.extraction import selected_value
+from linkwright.language.format import Document
+from linkwright.language.formats import format_of
 from linkwright.language.highlighting import highlights_in
 from linkwright.language.hover import definitions_at, explain_at
 from linkwright.language.links import file_references
 from linkwright.language.macro_extraction import selected_elements
 from linkwright.language.refactoring import offers_at
 from linkwright.language.suppressing import code_at, suppression
+from linkwright.language.workspace import Workspace
 from linkwright.lsp.positions import TextPositions
 from linkwright.lsp.requests.navigation import uses_in_file
 from linkwright.lsp.requests.texts import folds, format_edits, linked_tags, selections, symbols
@@ -24,10 +27,11 @@ from linkwright.packages import PackageFinder
 
 ROBOT = (Path(__file__).parents[2] / "robots/my_robot_description/urdf/mbot_gazebo.xacro").read_text(encoding="utf-8")
 FINDER = PackageFinder(start=[Path(__file__).parents[2] / "robots"])
+WORKSPACE = Workspace([Path(__file__).parents[2] / "robots"])
 CUT = st.tuples(st.integers(0, len(ROBOT)), st.integers(0, 40), st.text("<>/=\"' ${}()\n机a", max_size=8))
 
 
-@given(CUT, st.sampled_from(["robot.xacro", "robot.urdf", "robot.world", "robot.srdf"]))
+@given(CUT, st.sampled_from(["robot.xacro", "robot.urdf", "robot.world"]))
 def test_no_state_of_a_text_is_too_much(cut, name):
     start, length, typed = cut
     text = ROBOT[:start] + typed + ROBOT[start + length :]
@@ -66,6 +70,104 @@ def test_no_state_of_a_text_is_too_much(cut, name):
     symbols(positions)
     linked_tags(positions, place)
     format_edits(positions, file)
+
+
+LAUNCH = """<launch><arg name="a" default="$(find-pkg-share my_robot_description)/urdf"/>
+<include file="$(find-pkg-share ros_gz_sim)/launch/gz_sim.launch.py"><arg name="gz_args" value="$(var a)"/></include>
+<node pkg="my_robot_description" exec="b"><param from="$(var a)/m.yaml"/></node></launch>"""
+PYTHON = """share = get_package_share_directory('my_robot_description')
+KNOWN = {'a': ('1', "two")}
+x = [DeclareLaunchArgument(n, default_value=d) for n, (d, e) in KNOWN.items()]
+IncludeLaunchDescription(Source([os.path.join(share, 'launch', f'{x}.py')]), launch_arguments={'a': '1'}.items())
+y = y + '/' / Path(y) + PathJoinSubstitution([FindPackageShare("my_robot_description"), y, 'urdf'])
+Node(package=share, executable='b', output='screen', remappings=[('c', 'd')])
+"""
+MESSAGE = """# A lamp
+std_msgs/Header header
+Glow[<=3] glow  # of it
+int32 LIMIT=3
+---
+string<=5 name "x"
+"""
+SEMANTICS = """<robot name="mbot"><group name="a"><chain base_link="b" tip_link="c"/></group>
+<group_state name="s" group="a"><joint name="j" value="0"/></group_state></robot>"""
+PACKAGE = """<package format="3"><name>a</name><license file="LICENSE">MIT</license>
+<exec_depend condition="x">my_robot_description</exec_depend><export><build_type>ament_cmake</build_type></export>"""
+PARAMETERS = """controller_manager:
+  ros__parameters:
+    drive: {type: diff_drive_controller/DiffDriveController}
+drive:
+  ros__parameters:
+    left_wheel_names: ["left_wheel_joint", # two
+      'b']
+    linear.x: {max_velocity: 1.0}
+    joints:
+    - a
+/**/local_costmap:
+  local_costmap:
+    ros__parameters: # of the map
+      layer:
+        plugin: "nav2_costmap_2d::ObstacleLayer"
+        note: |
+          a: b
+"""
+VIEWER = """Visualization Manager:
+  Displays:
+    - Alpha: 0.5
+      Class: rviz_default_plugins/LaserScan
+      Topic: {Depth: 5}
+    - Class: rviz_default_plugins/TF
+      Frames:
+        base_link: {Value: true}
+  Global Options:
+    Fixed Frame: base_link
+  Views:
+    Current:
+      Class: rviz_default_plugins/Orbit
+"""
+ACTIONS = """launch:
+- arg: {name: a, default: "$(dirname)/urdf"}
+- node:
+    pkg: my_robot_description
+    param:
+    - from: "$(var a)/m.yaml"
+- group:
+  - include:
+      file: $(find-pkg-share ros_gz_sim)/launch/gz_sim.launch.py
+      arg:
+      - name: gz_args
+        value: 'b'
+"""
+OWN = [
+    ("launch/a.launch.xml", LAUNCH),
+    ("launch/a.launch.py", PYTHON),
+    ("srv/A.srv", MESSAGE),
+    ("a.launch.yaml", ACTIONS),
+]
+OWN += [("config/a.srdf", SEMANTICS), ("config/a.srdf.xacro", SEMANTICS), ("package.xml", PACKAGE)]
+OWN += [("a.launch.yaml", ACTIONS), ("config/a.yaml", PARAMETERS), ("rviz/a.rviz", VIEWER)]
+MARKS = st.text("<>/=\"' ${}()[],.:#\\n\n机a-@", max_size=8)
+
+
+@given(st.data())
+def test_no_state_of_a_text_with_its_own_format_is_too_much(data):
+    name, whole = data.draw(st.sampled_from(OWN))
+    start, length = data.draw(st.integers(0, len(whole))), data.draw(st.integers(0, 60))
+    typed = data.draw(MARKS)
+    text = whole[:start] + typed + whole[start + length :]
+    offset = start + len(typed)
+    file = Path(__file__).parents[2] / "robots/my_robot_description" / name
+    document = Document(WORKSPACE, {file: text}, file, text)
+    known = format_of(file)
+    assert known is not None
+    assert all(0 <= item.start <= offset for item in known.complete(document, offset))
+    explained = known.explain(document, offset)
+    assert explained is None or 0 <= explained.start <= explained.end <= len(text)
+    for target in known.define(document, offset):
+        assert 0 <= target.start <= target.end
+    assert all(0 <= link.start < link.end <= len(text) for link in known.links(document))
+    for symbol in known.symbols(document) if known.symbols is not None else ():
+        assert 0 <= symbol.start <= symbol.end <= len(text)
 
 
 LINES = st.lists(st.sampled_from(["a", "机", "🤖", "<", "\n", "\r\n"]), max_size=30).map("".join)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import Graph, Parameter, ParameterType
-from linkwright.nodes.parameter_tables import declared, parameter
+from linkwright.nodes.parameter_tables import declared, entries, for_each, one_of, parameter
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,3 +49,33 @@ async def test_a_value_of_another_type_is_refused(graph: Graph) -> None:
     with pytest.raises(LinkwrightError) as caught:
         declared(node, Settings)
     assert caught.value.diagnostics[0].code == "GRAPH201"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Wheel:
+    """A wheel.
+
+    Attributes:
+        radius: in metres,
+            with the tyre.
+    """
+
+    radius: float = 0.1
+
+
+@dataclass(frozen=True, kw_only=True)
+class Drive:
+    wheels: tuple[str, ...] = parameter((), description="the joints")
+    kind: str = parameter("front", check=one_of("front", "rear"))
+    sizes: Mapping[str, Wheel] = for_each("wheels", Wheel)
+
+
+def test_a_table_describes_its_parameters_without_a_node():
+    wheels, kind, radius = entries(Drive)
+    assert (wheels.name, wheels.kind, wheels.description) == ("wheels", ParameterType.STRING_ARRAY, "the joints")
+    assert (kind.default, kind.choices) == ("front", ("front", "rear"))
+    assert (radius.name, radius.keys, radius.description) == (
+        "sizes.*.radius",
+        ("wheels",),
+        "in metres, with the tyre.",
+    )

@@ -13,7 +13,7 @@ from pathlib import Path
 from linkwright.diagnostics import Phrase
 from linkwright.language.cursor import Cursor, Spot, cursor_at
 from linkwright.language.definitions import NameDefinition, NameKind
-from linkwright.language.grammar import PREFIX, XACRO, root_of, rule_at
+from linkwright.language.grammar import PREFIX, XACRO, has_xacro, root_of, rule_at
 from linkwright.language.occurrences import kinds_of_reference
 from linkwright.language.parameters import called_macro, macro_parameters
 from linkwright.packages import PackageFinder
@@ -113,7 +113,7 @@ def _elements(
     for child in offered:
         snippet = mark + _element_snippet(child)
         yield Completion(child.tag, ItemKind.ELEMENT, start, "", describe_element(child), snippet)
-    if not cursor.tags:
+    if not cursor.tags or not has_xacro(root):
         return
     for tag in XACRO.values():
         yield Completion(tag.tag, ItemKind.ELEMENT, start, "xacro", describe_element(tag), mark + _element_snippet(tag))

@@ -1,10 +1,14 @@
-"""The elements and attributes that a place in a file may have: the tables of URDF and SDF, with xacro's tags."""
+"""The elements and attributes that a place in a file may have: the table of its language, with xacro's tags."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
 
+from linkwright.language.launch_schema import LAUNCH
+from linkwright.language.manifest_schema import PACKAGE
+from linkwright.language.srdf_schema import SRDF
+from linkwright.packages.manifest import MANIFEST
 from linkwright.schema import AttributeRule, ElementRule, ValueType
 from linkwright.sdf.worlds import SDF
 from linkwright.urdf.schema import ROBOT
@@ -92,7 +96,23 @@ def root_of(path: Path) -> ElementRule | None:
     name = path.name.removesuffix(".xacro")
     if name.endswith((".sdf", ".world")):
         return SDF
-    return ROBOT if path.name.endswith((".urdf", ".xacro")) and not name.endswith((".srdf", ".launch")) else None
+    if name.endswith(".srdf"):
+        return SRDF
+    if is_launch_file(path):
+        return LAUNCH
+    if path.name == MANIFEST:
+        return PACKAGE
+    return ROBOT if path.name.endswith((".urdf", ".xacro")) and not name.endswith(".launch") else None
+
+
+def is_launch_file(path: Path) -> bool:
+    """Return whether a file is a launch file in XML, by its name."""
+    return path.name.endswith((".launch.xml", ".launch", "_launch.xml")) or path.name == "launch.xml"
+
+
+def has_xacro(root: ElementRule) -> bool:
+    """Return whether files with a root element may contain xacro's tags."""
+    return root not in (LAUNCH, PACKAGE)
 
 
 def rule_at(root: ElementRule, tags: Sequence[str]) -> ElementRule | None:

@@ -62,6 +62,16 @@ class IncludeIndex:
                     pending.append(other)
         return list(found) or [file]
 
+    def roots(self, texts: Mapping[Path, str]) -> list[Path]:
+        """Return the files that no other file includes, found by their names.
+
+        Args:
+            texts: texts that replace those of files.
+        """
+        files = [*dict.fromkeys((*self.files, *(file for file in texts if file.name.endswith(DESCRIPTIONS))))]
+        included = {name for file in files for name in self._included(file, texts) if name != file.name}
+        return [file for file in files if file.name not in included]
+
     def related(self, file: Path, texts: Mapping[Path, str]) -> list[Path]:
         """Return a file, the descriptions that include it, and all files that these include, found by their names."""
         by_name: dict[str, list[Path]] = {}

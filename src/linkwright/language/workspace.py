@@ -17,6 +17,8 @@ from linkwright.lint.folders import Examined, relevant_package_findings, reporte
 from linkwright.lint.targets import DESCRIPTIONS, Targets, walk
 from linkwright.packages import PackageFinder, enclosing_package
 from linkwright.packages.manifest import MANIFEST
+from linkwright.urdf import Robot, read
+from linkwright.xacro import expand
 from linkwright.xmltree import Overlay
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.reader import read_bytes
@@ -64,9 +66,11 @@ class Workspace:
         self._checker = Checker(folders=self._folders)
         self._names: dict[Path, tuple[int, tuple[NameDefinition, ...]]] = {}
         self._results: dict[Path, _Result] = {}
+        self._robots: dict[Path, tuple[Mapping[Path, str], Robot | None]] = {}
 
     def file_saved(self, file: Path) -> None:
         """Note that a file on the disk was changed, made or removed."""
+        self._robots.clear()
         if file.name.endswith(_CALLERS):
             self._checker = Checker(folders=self._folders)
 
@@ -115,6 +119,26 @@ class Workspace:
             texts: the texts of the open files.
         """
         return [name for other in self.index.related(file, texts) for name in self._names_in(other, texts)]
+
+    def robot(self, entry: Path, texts: Mapping[Path, str]) -> Robot | None:
+        """Return the robot of a description with the default arguments; None if it cannot be expanded.
+
+        Args:
+            entry: the description.
+            texts: the texts of the open files. The result is kept while those of descriptions are the same.
+        """
+        texts = {
+            file: text for file, text in texts.items() if file.name.endswith(DESCRIPTIONS) and file in self.index.files
+        }
+        known = self._robots.get(entry)
+        if known is None or known[0] != texts:
+            overlay = Overlay({str(path): text for path, text in texts.items()})
+            try:
+                robot = read(expand(entry, {}, packages=self.finder(entry), overlay=overlay).document).robot
+            except LinkwrightError:
+                robot = None
+            known = self._robots[entry] = texts, robot
+        return known[1]
 
     def all_names(self, texts: Mapping[Path, str]) -> list[NameDefinition]:
         """Return the names that all descriptions of the workspace define.

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache, partial
 from pathlib import Path
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 from urllib.parse import unquote, urlsplit
 from urllib.request import url2pathname
 
@@ -20,6 +20,8 @@ from linkwright._version import __version__
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.language.definitions import NameDefinition
+from linkwright.language.format import Document, Format
+from linkwright.language.formats import format_of
 from linkwright.language.includes import real
 from linkwright.language.values import ValuedText, values_in
 from linkwright.language.workspace import Workspace
@@ -34,6 +36,14 @@ T = TypeVar("T")
 _log = logging.getLogger(__name__)
 _KEPT_TEXTS = 200
 """The number of files on the disk whose lines are kept, for the places of findings."""
+
+
+class FormattedText(NamedTuple):
+    """A text in a format with functions of its own."""
+
+    format: Format
+    document: Document
+    positions: TextPositions
 
 
 class LinkwrightServer(LanguageServer):
@@ -96,6 +106,25 @@ class LinkwrightServer(LanguageServer):
         if path is None or not path.name.endswith((*XML_FILES, ".xml")):
             return Path(), None
         return path, self.positions(path)
+
+    async def formatted(self, document: types.TextDocumentIdentifier) -> FormattedText | None:
+        """Return a document as `document` does, once the folders have been searched if its format needs that."""
+        found = self.document(document)
+        if found is not None and found.format.needs_index:
+            await self.when_indexed()
+            found = self.document(document)
+        return found
+
+    def document(self, document: types.TextDocumentIdentifier) -> FormattedText | None:
+        """Return a document with its format; None if its format has no functions of its own or it cannot be read."""
+        path = path_of(document.uri)
+        format_ = None if path is None else format_of(path)
+        if path is None or format_ is None or self.project is None:
+            return None
+        positions = self.positions(path)
+        if positions is None:
+            return None
+        return FormattedText(format_, Document(self.project, self.texts(), real(path), positions.text), positions)
 
     async def names(self, path: Path) -> list[NameDefinition]:
         """Return the names that the description of a file defines, once the folders have been searched."""

@@ -10,8 +10,12 @@ from __future__ import annotations
 
 import os
 from functools import cache
+from typing import TYPE_CHECKING
 
 from linkwright.messages.distribution import is_before_iron
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 _FOLDER = os.path.join(os.path.dirname(__file__), "data")  # noqa: PTH118, PTH120 - pathlib takes long to import
 _HEAD = "=== "
@@ -22,6 +26,13 @@ _LATER = " jazzy"
 def packages() -> tuple[str, ...]:
     """Return the names of the packages, sorted."""
     return tuple(sorted(name[:-4] for name in os.listdir(_FOLDER) if name.endswith(".txt")))  # noqa: PTH208 - as above
+
+
+def file_of(package: str) -> Path:
+    """Return the file with the interfaces of a package that comes with Linkwright."""
+    from pathlib import Path
+
+    return Path(_FOLDER, package + ".txt")
 
 
 def texts(package: str) -> dict[str, str]:

@@ -24,11 +24,13 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 from dataclasses import MISSING, dataclass, field, fields, is_dataclass
 from functools import cache
+from inspect import cleandoc
 from typing import Any, Generic, TypeVar, get_type_hints
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, joined, phrase
 from linkwright.graph import Node, Parameter, ParameterDescriptor, SetParametersResult
 from linkwright.graph.parameters.parameter import ParameterType
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.messages.distribution import is_before_iron
 
 P = TypeVar("P")
@@ -52,6 +54,8 @@ HUMBLE, JAZZY = "humble", "jazzy"
 """Distributions to which a parameter may be limited."""
 
 _SAME = object()
+_ATTRIBUTE = lazy_pattern(r"(?m)^    (\w+): (.*(?:\n     .*)*)")
+"""An entry below ``Attributes:`` of a docstring."""
 _NAMES, _TABLE, _BELOW, _ABOUT = "names", "table", "below", "about"
 _OF_EVERY_NODE = ("use_sim_time", "params_file", "type", "qos_overrides", "start_type_description_service")
 
@@ -103,6 +107,62 @@ def for_each(names: str, table: type[Any], *, below: str = "") -> Any:
         below: the prefix of the parameters, if it differs from the name of the field.
     """
     return field(default_factory=dict, metadata={_NAMES: tuple(names.split()), _TABLE: table, _BELOW: below})
+
+
+@dataclass(frozen=True, slots=True)
+class TableEntry:
+    """A parameter of a table, as `entries` describes it.
+
+    Attributes:
+        name: the name with dots; ``*`` represents the names in another parameter, as in ``gains.*.p``.
+        kind: the type.
+        default: the default value; None if it has none.
+        description: the purpose, with its unit; empty if the table does not tell it.
+        choices: the allowed values; empty if any value of the type is allowed.
+        only: the only distribution that has the parameter; empty if both have it.
+        keys: the parameters that contain the names for ``*``.
+    """
+
+    name: str
+    kind: ParameterType
+    default: Any
+    description: str = ""
+    choices: tuple[str, ...] = ()
+    only: str = ""
+    keys: tuple[str, ...] = ()
+
+
+def entries(table: Any, prefix: str = "", keys: tuple[str, ...] = ()) -> Iterator[TableEntry]:
+    """Yield the parameters of a table, without a node.
+
+    A parameter without a description has the one that the docstring of the table gives below ``Attributes:``.
+
+    Args:
+        table: the dataclass.
+        prefix: the text before the names, such as ``gains.*.``.
+        keys: the parameters that contain the names for ``*`` in the prefix.
+    """
+    kinds, described = _kinds(table), _attributes(table)
+    for entry in fields(table):
+        name = f"{prefix}{entry.metadata.get(_BELOW) or entry.name}"
+        if _NAMES in entry.metadata:
+            yield from entries(entry.metadata[_TABLE], f"{name}.*.", entry.metadata[_NAMES])
+        elif is_dataclass(kinds[entry.name]):
+            yield from entries(kinds[entry.name], f"{name}.", keys)
+        else:
+            about: _About = entry.metadata.get(_ABOUT, _About())
+            default = None if entry.default is MISSING else entry.default
+            if about.later is not _SAME and not is_before_iron():
+                default = about.later
+            choices = about.check.words if isinstance(about.check, _OneOf) else ()
+            description = about.description or described.get(entry.name, "")
+            yield TableEntry(name, _TYPES[kinds[entry.name]], default, description, choices, about.only, keys)
+
+
+def _attributes(table: Any) -> dict[str, str]:
+    """Return the descriptions of fields in a docstring."""
+    _, _, text = cleandoc(table.__doc__ or "").partition("\nAttributes:\n")
+    return {found[1]: " ".join(found[2].split()) for found in _ATTRIBUTE.finditer(text)}
 
 
 @dataclass(frozen=True, slots=True)
@@ -280,20 +340,25 @@ def at_least(limit: float) -> Check:
     )
 
 
-def one_of(*words: str) -> Check:
-    """Return a validator that requires one of the given words, or a list of them."""
+@dataclass(frozen=True, slots=True)
+class _OneOf:
+    words: tuple[str, ...]
 
-    def check(name: str, value: Any) -> Phrase | None:
+    def __call__(self, name: str, value: Any) -> Phrase | None:
+        """Return the error message if the value or an item of it is not one of the words."""
         for item in (value,) if isinstance(value, str) else value:
-            if item not in words:
+            if item not in self.words:
                 text = phrase(
                     "Parameter '{name}' with the value '{value}' is not one of: {words}",
                     name=name,
                     value=item,
-                    words=", ".join(words),
+                    words=", ".join(self.words),
                 )
-                hint = did_you_mean(item, words)
+                hint = did_you_mean(item, self.words)
                 return text if hint is None else joined((text, hint), "; ")
         return None
 
-    return check
+
+def one_of(*words: str) -> Check:
+    """Return a validator that requires one of the given words, or a list of them."""
+    return _OneOf(words)

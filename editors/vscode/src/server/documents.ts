@@ -1,5 +1,7 @@
 /** The names of the files that the language server reads, whatever language VS Code gives them. */
-export const FILES = "**/{*.xacro,*.urdf,*.sdf,*.world,*.srdf,*.launch,*.launch.xml,package.xml,model.config}";
+export const FILES =
+  "**/{*.xacro,*.urdf,*.sdf,*.world,*.srdf,*.launch,*.launch.xml,*.launch.py,*_launch.py,package.xml," +
+  "model.config,*.msg,*.srv,*.action,*.yaml,*.yml,*.rviz}";
 
 /** The documents that VS Code sends to the language server. */
 export const DOCUMENTS = [

@@ -30,7 +30,7 @@ class GripperParameters:
     """Parameters of all grippers."""
 
     action_monitor_rate: float = parameter(20.0, description="how often feedback comes, in Hz", check=at_least(0.1))
-    joint: str = parameter("", read_only=True, check=not_empty)
+    joint: str = parameter("", read_only=True, description="the joint of the gripper", check=not_empty)
     goal_tolerance: float = parameter(0.01, description="rad or m", check=at_least(0.0))
     max_effort: float = parameter(0.0, description="Nm or N; 0 for any", check=at_least(0.0))
     allow_stalling: bool = parameter(False, description="a goal succeeds when the gripper holds something")

@@ -83,12 +83,18 @@ class Constraints:
 class Parameters:
     """Parameters of the controller."""
 
-    joints: tuple[str, ...] = parameter((), read_only=True, check=not_empty)
+    joints: tuple[str, ...] = parameter(
+        (), read_only=True, description="the joints that trajectories move", check=not_empty
+    )
     command_joints: tuple[str, ...] = parameter(
         (), read_only=True, description="the joints that are commanded, where these have other names"
     )
-    command_interfaces: tuple[str, ...] = parameter((), read_only=True, check=_command_combination)
-    state_interfaces: tuple[str, ...] = parameter((), read_only=True, check=_state_combination)
+    command_interfaces: tuple[str, ...] = parameter(
+        (), read_only=True, description="of each joint: position, velocity, ...", check=_command_combination
+    )
+    state_interfaces: tuple[str, ...] = parameter(
+        (), read_only=True, description="of each joint: position, velocity, ...", check=_state_combination
+    )
     allow_partial_joints_goal: bool = parameter(False, description="trajectories may name some of the joints")
     open_loop_control: bool = parameter(
         False, read_only=True, description="trajectories begin at the last command", only=HUMBLE
@@ -97,15 +103,21 @@ class Parameters:
         False, read_only=True, description="trajectories begin at the last command", only=JAZZY
     )
     allow_integration_in_goal_trajectories: bool = parameter(False, description="points may have no positions")
-    set_last_command_interface_value_as_state_on_activation: bool = True
+    set_last_command_interface_value_as_state_on_activation: bool = parameter(
+        True, description="whether the controller starts at the last command, if there is one"
+    )
     state_publish_rate: float | None = parameter(
         None, description="Hz; without it the state comes at each update", only=HUMBLE
     )
     action_monitor_rate: float = parameter(
         20.0, read_only=True, description="how often feedback comes, in Hz", check=at_least(0.1)
     )
-    interpolation_method: str = parameter("splines", read_only=True, check=one_of("splines", "none"))
-    allow_nonzero_velocity_at_trajectory_end: bool = parameter(True, later=False)
+    interpolation_method: str = parameter(
+        "splines", read_only=True, description="between the points", check=one_of("splines", "none")
+    )
+    allow_nonzero_velocity_at_trajectory_end: bool = parameter(
+        True, description="whether a trajectory may end in motion", later=False
+    )
     cmd_timeout: float = parameter(0.0, description="seconds after the end of a trajectory; more than goal_time")
     gains: Mapping[str, Gains] = for_each("joints", Gains)
     constraints: Constraints = Constraints()

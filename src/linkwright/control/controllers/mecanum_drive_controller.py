@@ -55,10 +55,10 @@ class Parameters:
     """Parameters of the controller."""
 
     reference_timeout: float = parameter(0.0, description="how long a command holds, in seconds; 0 for one update")
-    front_left_wheel_command_joint_name: str = ""
-    front_right_wheel_command_joint_name: str = ""
-    rear_right_wheel_command_joint_name: str = ""
-    rear_left_wheel_command_joint_name: str = ""
+    front_left_wheel_command_joint_name: str = parameter("", description="the joint of the wheel")
+    front_right_wheel_command_joint_name: str = parameter("", description="the joint of the wheel")
+    rear_right_wheel_command_joint_name: str = parameter("", description="the joint of the wheel")
+    rear_left_wheel_command_joint_name: str = parameter("", description="the joint of the wheel")
     front_left_wheel_state_joint_name: str = parameter("", description="the measured joint, if it is another one")
     front_right_wheel_state_joint_name: str = parameter("", description="the measured joint, if it is another one")
     rear_right_wheel_state_joint_name: str = parameter("", description="the measured joint, if it is another one")

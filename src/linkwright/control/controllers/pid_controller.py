@@ -44,10 +44,16 @@ class Gains(PidParameters):
 class Parameters:
     """Parameters of the controller."""
 
-    dof_names: tuple[str, ...] = parameter((), read_only=True, check=not_empty)
-    reference_and_state_dof_names: tuple[str, ...] = parameter((), read_only=True)
-    command_interface: str = parameter("", read_only=True, check=not_empty)
-    reference_and_state_interfaces: tuple[str, ...] = parameter((), read_only=True, check=_check_interfaces)
+    dof_names: tuple[str, ...] = parameter(
+        (), read_only=True, description="the joints that are commanded", check=not_empty
+    )
+    reference_and_state_dof_names: tuple[str, ...] = parameter(
+        (), read_only=True, description="the measured joints, if they are other ones"
+    )
+    command_interface: str = parameter("", read_only=True, description="position, velocity or effort", check=not_empty)
+    reference_and_state_interfaces: tuple[str, ...] = parameter(
+        (), read_only=True, description="the measured values: position, velocity", check=_check_interfaces
+    )
     use_external_measured_states: bool = parameter(False, description="states come from ~/measured_state")
     enable_feedforward: bool = parameter(False, description="whether feedforward_gain counts from the beginning")
     gains: Mapping[str, Gains] = for_each("dof_names", Gains)

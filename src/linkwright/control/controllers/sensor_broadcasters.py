@@ -32,11 +32,17 @@ def _check_covariance(name: str, value: tuple[float, ...]) -> Phrase | None:
 class ImuParameters:
     """Parameters of the IMU broadcaster."""
 
-    sensor_name: str = parameter("", check=not_empty)
-    frame_id: str = parameter("", check=not_empty)
-    static_covariance_orientation: tuple[float, ...] = parameter(_UNKNOWN, check=_check_covariance)
-    static_covariance_angular_velocity: tuple[float, ...] = parameter(_UNKNOWN, check=_check_covariance)
-    static_covariance_linear_acceleration: tuple[float, ...] = parameter(_UNKNOWN, check=_check_covariance)
+    sensor_name: str = parameter("", description="the sensor, as ros2_control names it", check=not_empty)
+    frame_id: str = parameter("", description="the frame of the messages", check=not_empty)
+    static_covariance_orientation: tuple[float, ...] = parameter(
+        _UNKNOWN, description="the covariance of the orientation, 9 values", check=_check_covariance
+    )
+    static_covariance_angular_velocity: tuple[float, ...] = parameter(
+        _UNKNOWN, description="the covariance of the angular velocity, 9 values", check=_check_covariance
+    )
+    static_covariance_linear_acceleration: tuple[float, ...] = parameter(
+        _UNKNOWN, description="the covariance of the acceleration, 9 values", check=_check_covariance
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,8 +118,8 @@ class WrenchParameters:
     `offset` is added to the wrench before it is multiplied by `multiplier`.
     """
 
-    frame_id: str = parameter("", check=not_empty)
-    sensor_name: str = ""
+    frame_id: str = parameter("", description="the frame of the messages", check=not_empty)
+    sensor_name: str = parameter("", description="the sensor, as ros2_control names it")
     interface_names: WrenchNames = WrenchNames()
     offset: Offset = Offset()
     multiplier: Multiplier = Multiplier()
@@ -123,8 +129,8 @@ class WrenchParameters:
 class RangeParameters:
     """Parameters of the range broadcaster."""
 
-    sensor_name: str = parameter("", check=not_empty)
-    frame_id: str = parameter("", check=not_empty)
+    sensor_name: str = parameter("", description="the sensor, as ros2_control names it", check=not_empty)
+    frame_id: str = parameter("", description="the frame of the messages", check=not_empty)
     radiation_type: int = parameter(0, description="0 for ultrasound, 1 for infrared")
     field_of_view: float = parameter(0.52, description="rad")
     min_range: float = parameter(0.52, description="m")
@@ -136,7 +142,7 @@ class RangeParameters:
 class TransformParameters:
     """Parameters of the transform that is published with a pose."""
 
-    enable: bool = True
+    enable: bool = parameter(True, description="whether to publish the transform")
     child_frame_id: str = parameter("", description="the frame at the pose; the name of the pose where it is empty")
     publish_rate: float = parameter(0.0, description="Hz; 0 for each update", check=at_least(0.0))
 
@@ -145,8 +151,8 @@ class TransformParameters:
 class PoseParameters:
     """Parameters of the pose broadcaster."""
 
-    frame_id: str = parameter("", check=not_empty)
-    pose_name: str = ""
+    frame_id: str = parameter("", description="the frame of the messages", check=not_empty)
+    pose_name: str = parameter("", description="the pose sensor, as ros2_control names it")
     interface_names: PoseNames = PoseNames()
     tf: TransformParameters = TransformParameters()
 

@@ -23,18 +23,22 @@ class SpeedLimits:
     The component is in m/s or rad/s.
     """
 
-    has_velocity_limits: bool | None = parameter(None, only=HUMBLE)
-    has_acceleration_limits: bool | None = parameter(None, only=HUMBLE)
-    has_jerk_limits: bool | None = parameter(None, only=HUMBLE)
-    max_velocity: float = nan
-    min_velocity: float = nan
-    max_acceleration: float = nan
-    min_acceleration: float = nan
-    max_deceleration: float = parameter(nan, only=JAZZY)
-    max_acceleration_reverse: float = parameter(nan, only=JAZZY)
-    max_deceleration_reverse: float = parameter(nan, only=JAZZY)
-    max_jerk: float = nan
-    min_jerk: float = nan
+    has_velocity_limits: bool | None = parameter(
+        None, description="whether the limits of the velocity apply", only=HUMBLE
+    )
+    has_acceleration_limits: bool | None = parameter(
+        None, description="whether the limits of the acceleration apply", only=HUMBLE
+    )
+    has_jerk_limits: bool | None = parameter(None, description="whether the limits of the jerk apply", only=HUMBLE)
+    max_velocity: float = parameter(nan, description="in m/s or rad/s; NaN for no limit")
+    min_velocity: float = parameter(nan, description="in m/s or rad/s; NaN for -max_velocity")
+    max_acceleration: float = parameter(nan, description="in m/s² or rad/s²; NaN for no limit")
+    min_acceleration: float = parameter(nan, description="negative, in m/s² or rad/s²; NaN for -max_acceleration")
+    max_deceleration: float = parameter(nan, description="negative, in m/s² or rad/s²", only=JAZZY)
+    max_acceleration_reverse: float = parameter(nan, description="backwards, in m/s² or rad/s²", only=JAZZY)
+    max_deceleration_reverse: float = parameter(nan, description="backwards, in m/s² or rad/s²", only=JAZZY)
+    max_jerk: float = parameter(nan, description="in m/s³ or rad/s³; NaN for no limit")
+    min_jerk: float = parameter(nan, description="in m/s³ or rad/s³; NaN for -max_jerk")
 
     def limiter(self, axis: str) -> SpeedLimiter:
         """Return a limiter with these limits.

@@ -8,10 +8,12 @@ from pathlib import Path
 
 from lsprotocol import types
 
+from linkwright.diagnostics import Phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.language.completion import Completion, ItemKind, complete
 from linkwright.language.definitions import NameDefinition
 from linkwright.language.facts import facts_at
+from linkwright.language.format import Target
 from linkwright.language.hover import definitions_at, explain_at
 from linkwright.language.includes import real
 from linkwright.language.links import file_references
@@ -21,7 +23,7 @@ from linkwright.language.workspace import Workspace
 from linkwright.lint.explain import find_page
 from linkwright.lsp.positions import TextOf, TextPositions
 from linkwright.lsp.requests.expansions import source_of
-from linkwright.lsp.server import LinkwrightServer, path_of
+from linkwright.lsp.server import FormattedText, LinkwrightServer, path_of
 
 _KINDS = {
     ItemKind.ELEMENT: types.CompletionItemKind.Class,
@@ -59,6 +61,17 @@ def completions(
     offset = positions.offset(place)
     found = complete(positions.text, offset, path, names, partial(project.finder, path))
     return [_item(item, positions, offset, takes_snippets=takes_snippets) for item in found]
+
+
+def items(
+    found: Iterable[Completion], positions: TextPositions, place: types.Position, *, takes_snippets: bool
+) -> list[types.CompletionItem]:
+    """Return completions at a place as the protocol has them; editors keep their order."""
+    offset = positions.offset(place)
+    listed = [_item(item, positions, offset, takes_snippets=takes_snippets) for item in found]
+    for number, item in enumerate(listed):
+        item.sort_text = f"{number:05}"
+    return listed
 
 
 def _item(item: Completion, positions: TextPositions, offset: int, *, takes_snippets: bool) -> types.CompletionItem:
@@ -139,33 +152,64 @@ def _locations(
             yield types.Location(uri(name.file), own.range(name.start, name.start + len(name.name)))
 
 
-def _markdown(text: str) -> types.MarkupContent:
+def explained(own: FormattedText, place: types.Position) -> types.Hover | None:
+    """Return what a format knows about a place, or None if there is nothing to say."""
+    found = own.format.explain(own.document, own.positions.offset(place))
+    return None if found is None else types.Hover(_markdown(found.text), own.positions.range(found.start, found.end))
+
+
+def targets_at(own: FormattedText, place: types.Position) -> list[Target]:
+    """Return where a format finds the definition of the name at a place."""
+    return [*own.format.define(own.document, own.positions.offset(place))]
+
+
+def target_locations(
+    targets: Iterable[Target], text_of: TextOf, uri: Callable[[Path], str]
+) -> Iterable[types.Location]:
+    """Yield the places of targets as the protocol has them."""
+    for target in targets:
+        text = text_of(target.file)
+        start = types.Position(0, 0)
+        place = types.Range(start, start) if text is None else text.range(target.start, target.end)
+        yield types.Location(uri(target.file), place)
+
+
+def _markdown(text: str | Phrase) -> types.MarkupContent:
     return types.MarkupContent(types.MarkupKind.Markdown, localized(text))
 
 
 def add_requests(server: LinkwrightServer) -> None:
     """Add the requests of this module to a server."""
 
-    @server.feature(types.TEXT_DOCUMENT_COMPLETION, types.CompletionOptions(["<", " ", '"', "/", "{", "(", ":"]))
+    @server.feature(types.TEXT_DOCUMENT_COMPLETION, types.CompletionOptions(["<", " ", '"', "'", "/", "{", "(", ":"]))
     async def completion_request(
         server: LinkwrightServer, asked: types.CompletionParams
     ) -> list[types.CompletionItem] | None:
-        path, positions = server.text(asked.text_document)
-        if positions is None or server.project is None:
-            return None
         capabilities = server.client_capabilities.text_document
         item = capabilities.completion.completion_item if capabilities and capabilities.completion else None
         takes_snippets = bool(item and item.snippet_support)
+        own = await server.formatted(asked.text_document)
+        if own is not None:
+            await server.when_indexed()
+            server.check_unchanged(own.document.file, own.positions)
+            found = own.format.complete(own.document, own.positions.offset(asked.position))
+            return items(found, own.positions, asked.position, takes_snippets=takes_snippets)
+        path, positions = server.text(asked.text_document)
+        if positions is None or server.project is None:
+            return None
         known = await server.names(path)
         return completions(server.project, path, known, positions, asked.position, takes_snippets=takes_snippets)
 
     @server.feature(types.TEXT_DOCUMENT_HOVER)
     async def hover_request(server: LinkwrightServer, asked: types.HoverParams) -> types.Hover | None:
-        path, positions = server.text(asked.text_document)
-        project, texts = server.project, server.texts()
         suppressed = suppression_hover(server, asked)
         if suppressed is not None:
             return suppressed
+        own = await server.formatted(asked.text_document)
+        if own is not None:
+            return await server.in_thread(lambda: explained(own, asked.position))
+        path, positions = server.text(asked.text_document)
+        project, texts = server.project, server.texts()
         if positions is None or project is None:
             return None
         known, values = await server.names(path), await server.values(path)
@@ -178,6 +222,10 @@ def add_requests(server: LinkwrightServer) -> None:
     async def definition_request(
         server: LinkwrightServer, asked: types.DefinitionParams
     ) -> list[types.Location] | None:
+        own = await server.formatted(asked.text_document)
+        if own is not None:
+            targets = await server.in_thread(lambda: targets_at(own, asked.position))
+            return [*target_locations(targets, server.positions, server.uri_of)]
         source = await server.in_thread(lambda: source_of(server, asked.text_document.uri, asked.position))
         path, positions = server.text(asked.text_document)
         if positions is None or server.project is None:

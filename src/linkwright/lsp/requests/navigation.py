@@ -10,9 +10,10 @@ from lsprotocol import types
 
 from linkwright.language.definitions import NameDefinition, NameKind
 from linkwright.language.includes import real
-from linkwright.language.links import file_references
+from linkwright.language.links import FileReference, file_references
 from linkwright.language.occurrences import Occurrence, occurrences_in
 from linkwright.language.renaming import occurrence_at, references
+from linkwright.language.uses import uses_at
 from linkwright.lsp.positions import TextPositions
 from linkwright.lsp.server import LinkwrightServer, path_of
 
@@ -152,6 +153,16 @@ def _tag_start(text: str, offset: int) -> int:
     return text.rfind("<", 0, offset)
 
 
+def _links(
+    server: LinkwrightServer, positions: TextPositions, references: Iterable[FileReference]
+) -> list[types.DocumentLink]:
+    return [
+        types.DocumentLink(positions.range(link.start, link.end), server.uri_of(link.file))
+        for link in references
+        if link.file.is_file()
+    ]
+
+
 def add_requests(server: LinkwrightServer) -> None:
     """Add the requests of this module to a server."""
 
@@ -159,17 +170,17 @@ def add_requests(server: LinkwrightServer) -> None:
     async def document_links(
         server: LinkwrightServer, asked: types.DocumentLinkParams
     ) -> list[types.DocumentLink] | None:
+        own = await server.formatted(asked.text_document)
+        if own is not None:
+            found = await server.in_thread(lambda: [*own.format.links(own.document)])
+            return _links(server, own.positions, found)
         path, positions = server.text(asked.text_document)
         if positions is None or server.project is None:
             return None
         values = await server.values(path)
         server.check_unchanged(path, positions)
-        found = file_references(positions.text, path, server.project.finder(real(path)), values)
-        return [
-            types.DocumentLink(positions.range(link.start, link.end), server.uri_of(link.file))
-            for link in found
-            if link.file.is_file()
-        ]
+        finder = server.project.finder(real(path))
+        return _links(server, positions, file_references(positions.text, path, finder, values))
 
     @server.feature(types.WORKSPACE_SYMBOL)
     async def workspace_symbol(
@@ -186,6 +197,12 @@ def add_requests(server: LinkwrightServer) -> None:
     def document_highlight(
         server: LinkwrightServer, asked: types.DocumentHighlightParams
     ) -> list[types.DocumentHighlight] | None:
+        own = server.document(asked.text_document)
+        if own is not None:
+            offset = own.positions.offset(asked.position)
+            uses = uses_at(own.document, own.format, offset, in_file=True)
+            if uses:
+                return [types.DocumentHighlight(own.positions.range(use.start, use.end)) for use in uses]
         path, positions = server.text(asked.text_document)
         if positions is None:
             return None

@@ -16,7 +16,9 @@ from linkwright.language.mentions import Mention
 from linkwright.language.occurrences import Occurrence
 from linkwright.language.proof import Edit
 from linkwright.language.renaming import occurrence_at, references, rename
+from linkwright.language.uses import uses_at
 from linkwright.lsp.edits import document_edits
+from linkwright.lsp.requests.names import target_locations
 from linkwright.lsp.server import LinkwrightServer, path_of
 
 
@@ -58,6 +60,13 @@ def add_requests(server: LinkwrightServer) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_REFERENCES)
     async def references_request(server: LinkwrightServer, asked: types.ReferenceParams) -> list[types.Location] | None:
+        own = await server.formatted(asked.text_document)
+        if own is not None:
+            offset = own.positions.offset(asked.position)
+            uses = await server.in_thread(lambda: uses_at(own.document, own.format, offset))
+            own_uses = [*target_locations(uses, server.positions, server.uri_of)]
+            if own_uses:
+                return own_uses[0 if asked.context.include_declaration else 1 :]
         texts, name = place(server, asked.text_document, asked.position)
         if name is None or server.project is None:
             return None

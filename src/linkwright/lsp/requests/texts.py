@@ -8,6 +8,7 @@ from pathlib import Path
 from lsprotocol import types
 
 from linkwright.diagnostics import LinkwrightError
+from linkwright.language.format import Symbol
 from linkwright.language.outline import Outline, OutlineElement
 from linkwright.lint.configuration import settings_for
 from linkwright.lsp.positions import TextPositions
@@ -75,6 +76,13 @@ def _symbols(elements: Iterable[OutlineElement], positions: TextPositions) -> It
             positions.range(element.tag.start, element.tag.end),
             children=children,
         )
+
+
+def _own_symbol(symbol: Symbol, positions: TextPositions) -> types.DocumentSymbol:
+    place = positions.range(symbol.start, symbol.end)
+    children = [_own_symbol(child, positions) for child in symbol.children]
+    kind = types.SymbolKind[symbol.kind.value]
+    return types.DocumentSymbol(symbol.name, kind, place, place, detail=symbol.detail or None, children=children)
 
 
 def folds(positions: TextPositions) -> list[types.FoldingRange]:
@@ -152,6 +160,9 @@ def add_requests(server: LinkwrightServer) -> None:
     def document_symbol(
         server: LinkwrightServer, asked: types.DocumentSymbolParams
     ) -> list[types.DocumentSymbol] | None:
+        own = server.document(asked.text_document)
+        if own is not None and own.format.symbols is not None:
+            return [_own_symbol(symbol, own.positions) for symbol in own.format.symbols(own.document)]
         _, positions = server.text(asked.text_document)
         return None if positions is None else symbols(positions)
 

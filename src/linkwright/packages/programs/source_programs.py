@@ -71,12 +71,17 @@ class SourcePrograms:
         return sorted({*self.entry_points, *self.scripts, *self.compiled})
 
 
-def source_programs(folder: Path) -> SourcePrograms:
-    """Return the programs of a source package."""
+def source_programs(folder: Path, *, runs_setup: bool = True) -> SourcePrograms:
+    """Return the programs of a source package.
+
+    Args:
+        folder: the folder of the package.
+        runs_setup: whether a ``setup.py`` that computes its programs is run. Otherwise, such programs are left out.
+    """
     found = SourcePrograms(folder)
     found.is_complete = any((folder / name).is_file() for name in BUILD_FILES)
     _read_configurations(found)
-    _read_setup_py(found)
+    _read_setup_py(found, runs_setup=runs_setup)
     _read_cmake(found)
     return found
 
@@ -120,7 +125,7 @@ def _read_configurations(found: SourcePrograms) -> None:
         _add_script(found, line.strip())
 
 
-def _read_setup_py(found: SourcePrograms) -> None:
+def _read_setup_py(found: SourcePrograms, *, runs_setup: bool) -> None:
     from linkwright.packages.readers.setup_py import read_setup
 
     path = found.folder / "setup.py"
@@ -131,7 +136,7 @@ def _read_setup_py(found: SourcePrograms) -> None:
     for entry in facts.entry_points:
         found.entry_points[entry.executable] = EntryPoint(entry.module, entry.function or "main")
     computed = facts.call and not facts.entry_points_complete
-    if computed or re.search(r"\bscripts\s*=", text):
+    if runs_setup and (computed or re.search(r"\bscripts\s*=", text)):
         entries, scripts = _run_setup_py(found.folder)
         for line in entries:
             _add_entry(found, line)

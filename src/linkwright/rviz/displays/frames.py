@@ -170,6 +170,7 @@ class TfDisplay(ViewerDisplay):
     """
 
     CLASS = "rviz_default_plugins/TF"
+    SCHEMA = _STATIC
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         self._shown: tuple[str, ...] = ()
@@ -182,7 +183,7 @@ class TfDisplay(ViewerDisplay):
     def schema(self) -> Schema:
         """Return the fixed properties, a check box for each frame, and the tree of frames."""
         if self._schema is None:
-            self._schema = (*_STATIC, self._frames_spec(), self._tree_spec())
+            self._schema = (*self.SCHEMA, self._frames_spec(), self._tree_spec())
         return self._schema
 
     def start(self) -> None:

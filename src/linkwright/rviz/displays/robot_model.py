@@ -170,6 +170,7 @@ class RobotModelDisplay(ViewerDisplay):
     CLASS = "rviz_default_plugins/RobotModel"
     MESSAGE = "std_msgs/msg/String"
     TOPIC = ("Description Topic",)
+    SCHEMA = (*_STATIC, *NO_ROWS)
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         self._rows: RobotRows | None = None

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from linkwright.diagnostics import phrase
 from linkwright.graph import QoSProfile
 from linkwright.rviz.config.rviz_config import DisplayConfig
@@ -37,6 +39,11 @@ class MotionPlanningDisplay(PlanningSceneDisplay):
     """
 
     CLASS = "moveit_rviz_plugin/MotionPlanning"
+    SCHEMA: ClassVar[Schema] = (
+        *PlanningSceneDisplay.SCHEMA,
+        _REQUEST_SPEC,
+        PropertySpec(PATH, "group", description="The motions.", children=path_specs(())),
+    )
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         super().__init__(host, identity, config)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from contextlib import suppress
-from typing import Any
+from typing import Any, ClassVar
 
 from linkwright.diagnostics import foreign
 from linkwright.graph import Client
@@ -46,6 +46,7 @@ class PlanningSceneDisplay(MoveItDisplay):
     CLASS = "moveit_rviz_plugin/PlanningScene"
     MESSAGE = "moveit_msgs/msg/PlanningScene"
     TOPIC = (SCENE_TOPIC,)
+    SCHEMA: ClassVar[Schema] = (NAMESPACE_SPEC, DESCRIPTION_SPEC, SCENE_TOPIC_SPEC, GEOMETRY_SPEC, scene_robot_spec(()))
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         super().__init__(host, identity, config)

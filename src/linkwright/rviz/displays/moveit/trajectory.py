@@ -240,6 +240,7 @@ class TrajectoryDisplay(MoveItDisplay):
     CLASS = "moveit_rviz_plugin/Trajectory"
     MESSAGE = "moveit_msgs/msg/DisplayTrajectory"
     TOPIC = (TRAJECTORY_TOPIC,)
+    SCHEMA = (DESCRIPTION_SPEC, *path_specs(()))
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         super().__init__(host, identity, config)

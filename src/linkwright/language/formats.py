@@ -1,0 +1,32 @@
+"""The formats of files with functions of their own; the other XML files are read as descriptions."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from linkwright.language.format import Format
+from linkwright.language.interfaces import INTERFACES
+from linkwright.language.launch_python import LAUNCH_PYTHON
+from linkwright.language.launch_xml import LAUNCH_XML
+from linkwright.language.launch_yaml import LAUNCH_YAML
+from linkwright.language.manifest import PACKAGE_XML
+from linkwright.language.parameter_files import PARAMETER_FILES
+from linkwright.language.rviz_files import RVIZ_FILES
+from linkwright.language.srdf import SRDF_FILES
+
+FORMATS: tuple[Format, ...] = (
+    LAUNCH_XML,
+    LAUNCH_PYTHON,
+    LAUNCH_YAML,
+    INTERFACES,
+    PACKAGE_XML,
+    SRDF_FILES,
+    PARAMETER_FILES,
+    RVIZ_FILES,
+)
+"""The formats, the first that covers a file decides."""
+
+
+def format_of(file: Path) -> Format | None:
+    """Return the format of a file, by its path; None if it has no functions of its own."""
+    return next((known for known in FORMATS if known.covers(file)), None)

@@ -1,0 +1,180 @@
+"""Interface files: types of fields in ``.msg``, ``.srv`` and ``.action`` files, with their definitions."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from linkwright.diagnostics import phrase
+from linkwright.diagnostics.translation import localized
+from linkwright.language.completion import Completion, ItemKind
+from linkwright.language.format import Document, Format, Symbol, SymbolKind, Target
+from linkwright.language.hover import Explanation
+from linkwright.messages import catalogue
+from linkwright.messages.definitions.interfaces import PRIMITIVES, snake_case
+from linkwright.messages.definitions.parser import SECTIONS
+from linkwright.packages import enclosing_package
+from linkwright.packages.interface_files import interface_file, interface_files
+from linkwright.packages.share_layout import source_of
+
+_FIELD = re.compile(
+    r"^[ \t]*(?P<type>[A-Za-z_][\w/]*)?(?P<bounds>(?:<=\w*)?(?:\[[^\]\n#]*\]?)?)?"
+    r"(?:[ \t]+(?P<name>\w*)?(?P<rest>[^\n#]*))?",
+    re.MULTILINE,
+)
+_SEPARATOR = re.compile(r"^---[ \t]*\r?$", re.MULTILINE)
+_USUAL = ("float64", "int32", "string", "bool", "uint8", "float32", "int64", "uint32")
+_USUAL_TYPES = ("std_msgs/Header", "builtin_interfaces/Time", "builtin_interfaces/Duration")
+_USUAL_PACKAGES = ("std_msgs", "geometry_msgs", "sensor_msgs", "builtin_interfaces", "nav_msgs")
+
+
+def is_interface_file(path: Path) -> bool:
+    """Return whether a file defines an interface, by its name."""
+    return path.suffix in (".msg", ".srv", ".action")
+
+
+@dataclass(frozen=True, slots=True)
+class _Message:
+    """A message type: its text, and the place of its definition."""
+
+    text: str
+    target: Target
+
+
+def _line_at(text: str, offset: int) -> re.Match[str] | None:
+    """Return the line around an offset, unless the offset is in its comment."""
+    start = text.rfind("\n", 0, offset) + 1
+    found = _FIELD.match(text, start)
+    return None if found is None or "#" in text[start:offset] else found
+
+
+def _own_package(document: Document) -> str:
+    found = enclosing_package(document.file.parent)
+    return "" if found is None else found[0]
+
+
+def _message(document: Document, written: str) -> _Message | None:
+    """Return the message type that a field names, ``Name`` or ``package/Name``; None if it is not known."""
+    package, slash, name = written.rpartition("/")
+    if not slash and name == "Header":
+        package = "std_msgs"
+    package = package.removesuffix("/msg") or _own_package(document)
+    share = document.finder.find(package) if package else None
+    file = None if share is None else interface_file(share, "msg", name)
+    if file is not None:
+        file = Path(source_of(str(file)))
+        return _Message(document.other(file), Target(file))
+    text = catalogue.texts(package).get(f"msg/{name}")
+    if text is None:
+        return None
+    known = catalogue.file_of(package)
+    start = known.read_text(encoding="utf-8").find(f"=== msg/{name}\n")
+    return _Message(text, Target(known, start + 4, start + 8 + len(name)))
+
+
+# --- completion -----------------------------------------------------------------------------------------------
+
+
+def _complete(document: Document, offset: int) -> Iterator[Completion]:
+    line = _line_at(document.text, offset)
+    if line is None:
+        return
+    if line["type"] is None or offset <= line.end("type"):
+        begin = line.start("type") if line["type"] is not None else offset
+        yield from _offer_types(document, document.text[begin:offset], min(begin, offset))
+    elif line["name"] is not None and line.start("name") <= offset <= line.end("name"):
+        base = line["type"].rpartition("/")[2]
+        if base not in PRIMITIVES:
+            yield Completion(snake_case(base), ItemKind.NAME, line.start("name"))
+
+
+def _offer_types(document: Document, typed: str, start: int) -> Iterator[Completion]:
+    own = _own_package(document)
+    package, slash, _ = typed.partition("/")
+    if slash:
+        for name in _names_in(document, package):
+            yield Completion(f"{package}/{name}", ItemKind.NAME, start)
+        return
+    for primitive in (*_USUAL, *(name for name in PRIMITIVES if name not in _USUAL)):
+        yield Completion(primitive, ItemKind.VALUE, start, PRIMITIVES[primitive].idl_name)
+    for name in _names_in(document, own):
+        if name != document.file.stem or document.file.suffix != ".msg":
+            yield Completion(name, ItemKind.NAME, start, own)
+    for name in _USUAL_TYPES:
+        yield Completion(name, ItemKind.NAME, start)
+    for package in dict.fromkeys((*_USUAL_PACKAGES, *sorted({*catalogue.packages(), *document.finder.packages()}))):
+        for name in _names_in(document, package) if package != own else ():
+            if f"{package}/{name}" not in _USUAL_TYPES:
+                yield Completion(f"{package}/{name}", ItemKind.NAME, start)
+
+
+def _names_in(document: Document, package: str) -> list[str]:
+    share = document.finder.find(package) if package else None
+    own = {} if share is None else interface_files(share, "msg")
+    known = [name.removeprefix("msg/") for name in catalogue.texts(package) if name.startswith("msg/")]
+    return sorted({*own, *known})
+
+
+# --- hover, definition and symbols ----------------------------------------------------------------------------
+
+
+def _explain(document: Document, offset: int) -> Explanation | None:
+    line = _line_at(document.text, offset)
+    if line is None or line["type"] is None or not line.start() <= offset <= line.end():
+        return None
+    written = line["type"]
+    in_name = line["name"] and line.start("name") <= offset <= line.end("name")
+    if not in_name and not line.start("type") <= offset <= line.end("type"):
+        return None
+    start, end = line.span("name" if in_name else "type")
+    if written in PRIMITIVES:
+        return Explanation(_described(written), start, end)
+    message = _message(document, written)
+    return None if message is None else Explanation(f"**{written}**\n\n```\n{message.text.strip()}\n```", start, end)
+
+
+def _described(name: str) -> str:
+    primitive = PRIMITIVES[name]
+    if primitive.is_integer:
+        text = phrase("`{name}`: an integer from {low} to {high}", name=name, low=primitive.low, high=primitive.high)
+    elif primitive.python is float:
+        text = phrase("`{name}`: a number with {bits} bits", name=name, bits=primitive.size * 8)
+    else:
+        return f"`{name}`: {primitive.idl_name}"
+    return localized(text)
+
+
+def _define(document: Document, offset: int) -> Iterator[Target]:
+    line = _line_at(document.text, offset)
+    if line is not None and line["type"] is not None and offset <= line.end("type"):
+        message = None if line["type"] in PRIMITIVES else _message(document, line["type"])
+        if message is not None:
+            yield message.target
+
+
+def _symbols(document: Document) -> Iterator[Symbol]:
+    text = document.text
+    separators = [(found.start(), found.end()) for found in _SEPARATOR.finditer(text)]
+    bounds = [0, *(end for _, end in separators)], [*(start for start, _ in separators), len(text)]
+    names = SECTIONS.get(document.file.suffix[1:], ("",))
+    for number, (start, end) in enumerate(zip(*bounds, strict=True)):
+        fields = tuple(_fields(text, start, end))
+        name = names[number].lstrip("_") if number < len(names) else ""
+        if not name:
+            yield from fields
+        else:
+            yield Symbol(name, SymbolKind.GROUP, start, end, fields)
+
+
+def _fields(text: str, start: int, end: int) -> Iterator[Symbol]:
+    for line in _FIELD.finditer(text, start, end):
+        if line["type"] and line["name"]:
+            kind = SymbolKind.CONSTANT if (line["rest"] or "").lstrip().startswith("=") else SymbolKind.FIELD
+            detail = line["type"] + (line["bounds"] or "")
+            yield Symbol(line["name"], kind, line.start("type"), line.end(), (), detail)
+
+
+INTERFACES = Format(is_interface_file, _complete, _explain, _define, symbols=_symbols)
+"""Interface files: messages, services and actions."""

@@ -1,0 +1,94 @@
+"""The classes of launch and launch_ros that Python launch files use, with their arguments, from their docstrings."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from collections.abc import Mapping
+from functools import cache
+from importlib import import_module
+from typing import Any
+
+_MODULES = (
+    "linkwright.launch.model.actions",
+    "linkwright.launch.model.substitutions",
+    "linkwright.launch.model.conditions",
+    "linkwright.launch.model.description",
+    "linkwright.launch.model.event_handlers",
+    "linkwright.launch.model.process_event_handlers",
+    "linkwright.launch.frontend.include",
+    "linkwright.launch.frontend.sources",
+    "linkwright.launch.ros",
+)
+_ARGUMENT = re.compile(r"^    (\w+): (.*(?:\n        .*)*)", re.MULTILINE)
+_USUAL = (
+    *("package", "executable", "plugin", "name", "namespace", "output", "parameters", "remappings", "arguments"),
+    *("launch_arguments", "default_value", "description", "condition"),
+)
+_HIDDEN = frozenset({"self", "kwargs", "unknown", "args"})
+
+
+@cache
+def _classes() -> Mapping[str, Any]:
+    found: dict[str, Any] = {}
+    for module in map(import_module, _MODULES):
+        for name, value in vars(module).items():
+            if inspect.isclass(value) and value.__module__.startswith("linkwright.launch") and name[0] != "_":
+                found.setdefault(name, value)
+    return found
+
+
+def described_class(name: str) -> str | None:
+    """Return the purpose and arguments of a class, in Markdown; None if launch has no such class."""
+    cls = _classes().get(name)
+    if cls is None:
+        return None
+    about, _, _ = (inspect.getdoc(cls) or "").partition("\nArgs:")
+    arguments = [f"- `{argument}`: {meaning}" for argument, meaning in class_arguments(name).items() if meaning]
+    return "\n\n".join(filter(None, (f"**{name}**: {_markdown(about.strip())}", "\n".join(arguments))))
+
+
+@cache
+def class_arguments(name: str) -> Mapping[str, str]:
+    """Return the arguments of a class with their meanings, in Markdown, the usual ones first.
+
+    A meaning that is not documented is empty. The mapping is empty if launch has no such class.
+    """
+    found: dict[str, str] = {}
+    for cls in inspect.getmro(_classes().get(name, object)):
+        written = {match[1]: match[2] for match in _ARGUMENT.finditer(inspect.getdoc(cls) or "")}
+        for argument in _parameters(cls):
+            meaning = written.get(argument, "")
+            if not found.get(argument):
+                found[argument] = "" if meaning.startswith("see `") else _markdown(" ".join(meaning.split()))
+    return dict(sorted(found.items(), key=lambda entry: _rank(entry[0])))
+
+
+def first_argument(name: str) -> str | None:
+    """Return the argument of a class that may be given without its name; None if there is none."""
+    cls = _classes().get(name)
+    try:
+        parameters = [] if cls is None else [*inspect.signature(cls).parameters.values()]
+    except (TypeError, ValueError):
+        return None
+    first = parameters[0] if parameters else None
+    return first.name if first is not None and first.kind is first.POSITIONAL_OR_KEYWORD else None
+
+
+def _rank(argument: str) -> int:
+    return _USUAL.index(argument) if argument in _USUAL else len(_USUAL)
+
+
+def _parameters(cls: Any) -> list[str]:
+    constructor = vars(cls).get("__init__")
+    if constructor is None or not cls.__module__.startswith("linkwright."):
+        return []
+    try:
+        names = inspect.signature(constructor).parameters
+    except (TypeError, ValueError):
+        return []
+    return [name for name in names if name not in _HIDDEN and not name.startswith("_")]
+
+
+def _markdown(text: str) -> str:
+    return text.replace("``", "`")

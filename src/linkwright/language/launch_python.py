@@ -1,0 +1,378 @@
+"""Launch files in Python: what the strings of calls such as ``Node(package="...")`` name. Nothing is run."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from linkwright.language.completion import Completion, ItemKind
+from linkwright.language.cursor import name_at
+from linkwright.language.format import Document, Format, Symbol, SymbolKind, Target
+from linkwright.language.hover import Explanation
+from linkwright.language.launch_arguments import LaunchArgument, arguments_in, likely_values
+from linkwright.language.launch_classes import class_arguments, described_class, first_argument
+from linkwright.language.links import FileReference
+from linkwright.language.offers import (
+    explain_file,
+    explain_package,
+    explain_program,
+    offer_components,
+    offer_files,
+    offer_packages,
+    offer_programs,
+    offer_values,
+    target_of_component,
+    target_of_file,
+    target_of_package,
+    target_of_program,
+)
+from linkwright.language.python_paths import JOINS, PACKAGE_FUNCTIONS, PythonPaths, Value
+from linkwright.language.python_text import Group, Item, Name, PythonText, Text
+from linkwright.packages.share_layout import source_of
+
+_PACKAGE_KEYWORDS = frozenset({"package", "package_name", "node_package"})
+_PROGRAM_KEYWORDS = frozenset({"executable", "node_executable"})
+_CONFIGURATIONS = frozenset({"LaunchConfiguration", "LaunchConfigurationEquals", "LaunchConfigurationNotEquals"})
+_ACTIONS = ("Node", "LifecycleNode", "ComposableNode", "ComposableNodeContainer", "IncludeLaunchDescription")
+_OUTPUTS = ("screen", "log", "both", "own_log", "full")
+_URI = "package://"
+_WORD_BEFORE = re.compile(r"[^\W\d]\w*\Z")
+
+
+def is_python_launch_file(path: Path) -> bool:
+    """Return whether a file is a launch file in Python, or a Python file below a folder of launch files."""
+    is_launch = path.name.endswith((".launch.py", "_launch.py")) or path.name == "launch.py"
+    return is_launch or (path.suffix == ".py" and "launch" in path.parts[-4:-1])
+
+
+@dataclass(frozen=True, slots=True)
+class _Place:
+    """The meaning of a string in a launch file.
+
+    Attributes:
+        kind: "package", "program", "component", "configuration", "argument", "output", "choice" or "path".
+        text: the string.
+        package: the package of a program or component.
+        arguments: what a configuration or argument may be.
+        base: the path that the string continues.
+        choices: the likely values.
+    """
+
+    kind: str
+    text: Text
+    package: str | None = None
+    arguments: tuple[LaunchArgument, ...] = ()
+    base: Value | None = None
+    choices: tuple[str, ...] = ()
+
+
+class _LaunchText:
+    """A launch file in Python, with what it declares."""
+
+    def __init__(self, document: Document) -> None:
+        self.document = document
+        self.python = PythonText(document.text)
+        texts = {each.name: each.default for each in self.arguments if each.default and "(" not in each.default}
+        self.paths = PythonPaths(self.python, document.file, document.finder, texts)
+
+    @cached_property
+    def arguments(self) -> tuple[LaunchArgument, ...]:
+        return tuple(arguments_in(self.document.text, self.document.file))
+
+    def place_at(self, offset: int) -> _Place | None:
+        """Return what the string at an offset names; None outside of strings."""
+        found = self.python.string_at(offset)
+        return None if found is None else self._place(*found)
+
+    def _place(self, text: Text, item: Item) -> _Place:
+        group, keyword = item.group, item.keyword
+        index = group.items.index(item)
+        if keyword in _PACKAGE_KEYWORDS or (group.function in PACKAGE_FUNCTIONS and index == 0):
+            return _Place("package", text)
+        if group.function == "MoveItConfigsBuilder" and keyword == "package_name":
+            return _Place("package", text)
+        if keyword in _PROGRAM_KEYWORDS or keyword in ("plugin", "node_plugin"):
+            given = next((other for other in group.items if other.keyword in _PACKAGE_KEYWORDS), None)
+            kind = "program" if keyword in _PROGRAM_KEYWORDS else "component"
+            return _Place(kind, text, package=self.paths.text_of(given))
+        if group.function in _CONFIGURATIONS and (index == 0 or keyword == "variable_name"):
+            return _Place("configuration", text, arguments=self.arguments)
+        if keyword == "output":
+            return _Place("output", text, choices=_OUTPUTS)
+        if keyword == "default_value":
+            name = self.paths.text_of(group.argument("name", 0)) or ""
+            choices = self._choices(group) or likely_values(None, name, self.document.text)
+            return _Place("choice", text, base=self.paths.before(text, item), choices=choices)
+        included = self._included_arguments(text, item)
+        if included is not None:
+            return included
+        if group.function == "DeclareLaunchArgument" and (index == 0 or keyword == "name"):
+            own = tuple(argument for argument in self.arguments if argument.start == text.start)
+            return _Place("argument", text, arguments=own)
+        return _Place("path", text, base=self.paths.before(text, item))
+
+    def used_names(self, apart: Text) -> list[str]:
+        """Return the names of configurations that the file uses but does not declare, as its caller declares them."""
+        calls = self.python.calls_of(*_CONFIGURATIONS)
+        parts = (part for call in calls for item in call.items[:1] for part in item.parts[:1])
+        names = dict.fromkeys(part.value for part in parts if isinstance(part, Text) and part is not apart)
+        declared = {argument.name for argument in self.arguments}
+        return [name for name in names if name and name not in declared]
+
+    def _choices(self, call: Group) -> tuple[str, ...]:
+        listed = call.argument("choices")
+        part = listed.parts[0] if listed is not None and listed.parts else None
+        inner = part.items if isinstance(part, Group) else []
+        return tuple(each.value for item in inner for each in item.parts[:1] if isinstance(each, Text))
+
+    def _included_arguments(self, text: Text, item: Item) -> _Place | None:
+        """Return the place of a key or value in the launch arguments of an included file."""
+        include = _include_around(item)
+        if include is None:
+            return None
+        path = self.included_file(include)
+        declared = tuple(self._declared_in(path)) if path is not None else self.arguments
+        group = item.group
+        is_pair = group.opening == "(" and not group.callee
+        first = group.items[0].parts[:1] if is_pair else item.parts[:1]
+        name = first[0].value if first and isinstance(first[0], Text) else ""
+        if first and first[0] is text:
+            return _Place("argument", text, arguments=declared) if is_pair or group.opening == "{" else None
+        if not is_pair and group.opening != "{":
+            return None
+        argument = next((each for each in declared if each.name == name), None)
+        choices = () if argument is None else likely_values(argument, name, self.document.text)
+        known = () if argument is None else (argument,)
+        return _Place("choice", text, None, known, self.paths.before(text, item), choices)
+
+    def included_file(self, include: Group) -> Path | None:
+        """Return the file that an ``IncludeLaunchDescription`` includes, if it is known and exists."""
+        value = self.paths.value_of(include.argument("launch_description_source", 0))
+        return None if value is None else self.file_of(value.text)
+
+    def file_of(self, path: str) -> Path | None:
+        """Return the existing file or folder of a path, or None."""
+        try:
+            file = self.document.file.parent / path
+            return file if path and "\n" not in path and file.exists() else None
+        except (OSError, ValueError):
+            return None
+
+    def _declared_in(self, path: Path) -> Iterator[LaunchArgument]:
+        path = Path(source_of(str(path)))
+        for argument in arguments_in(self.document.other(path), path):
+            if argument.is_argument:
+                yield argument
+
+    def path_until(self, place: _Place, end: int) -> str | None:
+        """Return the path up to the slash behind an offset in its last string, or None if it is not known."""
+        base = "" if place.base is None else place.base.text
+        rest = place.text.value[end - place.text.start :].partition("/")[0]
+        written = place.text.value[: end - place.text.start] + rest
+        return base.rstrip("/") + "/" + written.lstrip("/") if base.endswith("/") else base + written
+
+
+def _include_around(item: Item) -> Group | None:
+    """Return the ``IncludeLaunchDescription`` whose launch arguments contain an item, or None."""
+    around: Item | None = item
+    for _ in range(5):
+        if around is None:
+            return None
+        if around.keyword == "launch_arguments" and around.group.function == "IncludeLaunchDescription":
+            return around.group if around is not item else None
+        around = around.group.parent
+    return None
+
+
+# --- completion -----------------------------------------------------------------------------------------------
+
+
+def _complete(document: Document, offset: int) -> Iterator[Completion]:
+    launch = _LaunchText(document)
+    place = launch.place_at(offset)
+    if place is None:
+        yield from _keywords(launch, offset)
+        return
+    start = place.text.start
+    if place.kind == "package":
+        yield from offer_packages(document, start)
+    elif place.kind == "program":
+        yield from offer_programs(document, place.package, start)
+    elif place.kind == "component":
+        yield from offer_components(document, place.package, start)
+    elif place.kind in ("configuration", "argument"):
+        for argument in place.arguments:
+            if place.text.start != argument.start or argument.file != document.file:
+                detail = argument.default or ""
+                yield Completion(argument.name, ItemKind.NAME, start, detail, argument.described())
+        if place.kind == "configuration":
+            for name in launch.used_names(place.text):
+                yield Completion(name, ItemKind.NAME, start)
+    else:
+        yield from offer_values(place.choices, start)
+        yield from _offer_path(launch, place, offset)
+
+
+def _offer_path(launch: _LaunchText, place: _Place, offset: int) -> Iterator[Completion]:
+    typed = place.text.value[: offset - place.text.start]
+    if typed.startswith(_URI):
+        name, slash, rest = typed[len(_URI) :].partition("/")
+        share = launch.document.finder.find(name) if slash else None
+        if share is not None:
+            yield from offer_files(share, rest, offset)
+        elif not slash:
+            yield from offer_packages(launch.document, place.text.start + len(_URI))
+        return
+    if place.base is None or not place.base.is_path:
+        return
+    if not place.base.text.endswith("/") and not typed.startswith("/"):
+        return
+    yield from offer_files(Path(place.base.text), typed, offset, launch_files="launch" in place.base.text)
+
+
+# --- hover, definition and links ------------------------------------------------------------------------------
+
+
+def _explain(document: Document, offset: int) -> Explanation | None:
+    launch = _LaunchText(document)
+    place = launch.place_at(offset)
+    if place is None:
+        return _explain_name(launch, offset)
+    text = _explanation(launch, place, offset) or _explain_argument(launch, place)
+    return Explanation(text, place.text.start, place.text.end) if text else None
+
+
+def _explanation(launch: _LaunchText, place: _Place, offset: int) -> str | None:
+    value = place.text.value
+    if place.kind == "package":
+        return explain_package(launch.document, value)
+    if place.kind == "program":
+        return explain_program(launch.document, place.package, value)
+    if place.kind in ("configuration", "argument"):
+        return "\n\n".join(argument.described() for argument in place.arguments if argument.name == value)
+    path = launch.path_until(place, offset)
+    file = None if path is None else launch.file_of(path)
+    if file is not None and (place.base is not None or "/" in value):
+        return explain_file(file)
+    is_path = place.base is not None and place.base.is_path and path is not None
+    return explain_file(Path(path or "")) if is_path else None
+
+
+def _explain_argument(launch: _LaunchText, place: _Place) -> str | None:
+    """Explain the argument that a string is the value of: of an included file, or of a class of launch."""
+    if place.kind == "choice" and place.arguments:
+        return place.arguments[0].described()
+    found = launch.python.string_at(place.text.start)
+    if found is None or not found[1].keyword:
+        return None
+    meaning = class_arguments(found[1].group.function).get(found[1].keyword)
+    return f"`{found[1].keyword}`: {meaning}" if meaning else None
+
+
+def _keywords(launch: _LaunchText, offset: int) -> Iterator[Completion]:
+    """Yield the arguments of the call around an offset that are not given yet."""
+    text = launch.document.text
+    typed = _WORD_BEFORE.search(text, text.rfind("\n", 0, offset) + 1, offset)
+    call = launch.python.call_at(offset)
+    start = offset if typed is None else typed.start()
+    if call is None or not text[:start].rstrip().endswith(("(", ",")):
+        return
+    if any(item.start <= start and item.parts for item in call.items if _group_around(item, start) is not None):
+        return
+    given = {item.keyword for item in call.items}
+    if call.items[0].parts and not call.items[0].keyword and text[:start].rstrip().endswith(","):
+        given.add(first_argument(call.function) or "")
+    for name, meaning in class_arguments(call.function).items():
+        if name not in given:
+            yield Completion(f"{name}=", ItemKind.ATTRIBUTE, start, call.function, meaning)
+
+
+def _group_around(item: Item, offset: int) -> Group | None:
+    """Return the brackets directly in an item that contain an offset, or None if there are none."""
+    groups = (part for part in item.parts if isinstance(part, Group))
+    return next((group for group in groups if group.start < offset < group.end), None)
+
+
+def _explain_name(launch: _LaunchText, offset: int) -> Explanation | None:
+    """Explain the class, argument or path in a variable at an offset."""
+    found = name_at(launch.document.text, offset)
+    if found is None:
+        return None
+    name, start = found
+    call = launch.python.call_at(offset)
+    text = described_class(name.rpartition(".")[2])
+    if text is None and call is not None and any(item.keyword == name for item in call.items):
+        meaning = class_arguments(call.function).get(name)
+        text = f"`{name}`: {meaning}" if meaning else None
+    if text is None:
+        value = launch.paths.value_of(Item(launch.python.root, start, parts=[Name(name, start)]))
+        text = explain_file(Path(value.text)) if value is not None and value.is_path else None
+    return Explanation(text, start, start + len(name)) if text else None
+
+
+def _define(document: Document, offset: int) -> Iterator[Target]:
+    launch = _LaunchText(document)
+    place = launch.place_at(offset)
+    if place is None:
+        return
+    value = place.text.value
+    if place.kind == "package":
+        yield from target_of_package(document, value)
+    elif place.kind == "program":
+        yield from target_of_program(document, place.package, value)
+    elif place.kind == "component":
+        yield from target_of_component(document, place.package, value)
+    elif place.kind in ("configuration", "argument"):
+        for argument in place.arguments:
+            if argument.name == value:
+                yield Target(argument.file, argument.start, argument.end)
+    else:
+        path = launch.path_until(place, place.text.end)
+        yield from target_of_file(None if path is None else launch.file_of(path))
+
+
+def _links(document: Document) -> Iterator[FileReference]:
+    launch = _LaunchText(document)
+    for text, item in launch.python.strings:
+        if text.value and item.parts[-1] is text and not _continues(item):
+            base = launch.paths.before(text, item)
+            if base is not None and base.is_path:
+                file = launch.file_of(base.text.rstrip("/") + "/" + text.value.lstrip("/"))
+                if file is not None and file.is_file():
+                    yield FileReference(text.start, text.end, Path(source_of(str(file))))
+
+
+def _continues(item: Item) -> bool:
+    """Return whether an item of a joined path is followed by another one."""
+    return item.group.function in JOINS and item is not item.group.items[-1]
+
+
+# --- symbols --------------------------------------------------------------------------------------------------
+
+
+def _symbols(document: Document) -> Iterator[Symbol]:
+    launch = _LaunchText(document)
+    for argument in launch.arguments:
+        yield Symbol(
+            f"arg {argument.name}", SymbolKind.ARGUMENT, argument.start, argument.end, detail=argument.default or ""
+        )
+    for call in launch.python.calls_of(*_ACTIONS):
+        is_include = call.function == "IncludeLaunchDescription"
+        kind = SymbolKind.FILE if is_include else SymbolKind.NODE
+        detail = launch.paths.text_of(call.argument("package")) or ""
+        yield Symbol(_label(launch, call), kind, call.start - len(call.callee), max(call.end, call.start), (), detail)
+
+
+def _label(launch: _LaunchText, call: Group) -> str:
+    if call.function == "IncludeLaunchDescription":
+        file = launch.included_file(call)
+        return f"include {file.name}" if file is not None else "include"
+    names = (launch.paths.text_of(call.argument(key)) for key in ("name", "executable", "plugin"))
+    return f"{call.function} {next(filter(None, names), '')}".strip()
+
+
+LAUNCH_PYTHON = Format(is_python_launch_file, _complete, _explain, _define, _links, _symbols)
+"""Launch files in Python."""

@@ -1,0 +1,353 @@
+"""The elements of launch files in XML, as the actions of launch and launch_ros (ROS 2) read them."""
+
+from __future__ import annotations
+
+from linkwright.schema import AttributeRule, ElementRule, ValueType
+
+_TEXT = ValueType("text")
+_NAME = ValueType("name")
+_PATH = ValueType("path")
+_TRUTH = ValueType("true or false")
+_NUMBER = ValueType("number")
+_INTEGER = ValueType("integer")
+
+
+def _one(name: str, kind: ValueType, meaning: str, default: str | None = None, unit: str = "") -> AttributeRule:
+    return AttributeRule(name, kind, meaning, unit, default=default)
+
+
+def _required(name: str, kind: ValueType, meaning: str) -> AttributeRule:
+    return AttributeRule(name, kind, meaning, required=True)
+
+
+def _usual(name: str, kind: ValueType, meaning: str) -> AttributeRule:
+    return AttributeRule(name, kind, meaning, usual=True)
+
+
+_CONDITIONS = (
+    _one("if", _TRUTH, "the condition under which the element has an effect", "true"),
+    _one("unless", _TRUTH, "the condition under which the element has no effect", "false"),
+)
+
+
+def _element(
+    tag: str, meaning: str, *attributes: AttributeRule, children: tuple[ElementRule, ...] = (), nests: bool = False
+) -> ElementRule:
+    return ElementRule(tag, meaning, attributes, children, many=True, nests=nests)
+
+
+def _action(
+    tag: str, meaning: str, *attributes: AttributeRule, children: tuple[ElementRule, ...] = (), nests: bool = False
+) -> ElementRule:
+    return _element(tag, meaning, *attributes, *_CONDITIONS, children=children, nests=nests)
+
+
+def _pair(tag: str, meaning: str, name: str = "the name", value: str = "the value") -> ElementRule:
+    return _element(tag, meaning, _required("name", _NAME, name), _required("value", _TEXT, value))
+
+
+_PROCESS = (
+    _one("name", _NAME, "the name of the process in the log"),
+    _one("output", ValueType("screen, log or both"), "where the output of the process goes", "log"),
+    _one("cwd", _PATH, "the working folder of the process"),
+    _one("launch-prefix", _TEXT, "words before the command, such as gdb -ex run --args"),
+    _one("respawn", _TRUTH, "whether the process is started again when it ends", "false"),
+    _one("respawn_delay", _NUMBER, "the time before the process is started again", "0", "s"),
+    _one("respawn_max_retries", _INTEGER, "how often the process is started again; -1 for any number", "-1"),
+    _one("shell", _TRUTH, "whether a shell runs the command", "false"),
+    _one("emulate_tty", _TRUTH, "whether the process has a terminal", "false"),
+    _one("sigterm_timeout", _NUMBER, "the time from SIGINT to SIGTERM", "5", "s"),
+    _one("sigkill_timeout", _NUMBER, "the time from SIGTERM to SIGKILL", "5", "s"),
+    _one("on_exit", ValueType("shutdown"), "the reaction to the end of the process"),
+    _one("log_cmd", _TRUTH, "whether the log shows the command", "false"),
+    _one("cached_output", _TRUTH, "whether the output is kept for tests", "false"),
+    _one("split_arguments", _TRUTH, "whether arguments are split at spaces after substitution", "false"),
+)
+_ENV = _pair("env", "an environment variable of the process")
+_REMAP = _element(
+    "remap",
+    "another name for a topic, service or action of the node",
+    _required("from", _NAME, "the name in the program"),
+    _required("to", _NAME, "the name in the graph"),
+)
+_PARAM = _element(
+    "param",
+    "a parameter of the node, a group of parameters, or a file with parameters",
+    _usual("name", _NAME, "the name of the parameter"),
+    _usual("value", _TEXT, "the value, whose type follows from its form as in YAML"),
+    _one("from", _PATH, "a YAML file with parameters, instead of name and value"),
+    _one("type", ValueType("type of a parameter"), "the type of the value, such as str"),
+    _one("allow_substs", _TRUTH, "whether the file may contain substitutions", "false"),
+    _one("value-sep", _TEXT, "the separator of a list in the value"),
+    nests=True,
+)
+_NODE = (
+    _required("pkg", ValueType("name of a package"), "the package of the executable"),
+    _required("exec", ValueType("name of an executable"), "the executable in the package"),
+    AttributeRule("name", _NAME, "the name of the node", usual=True),
+    _one("namespace", _NAME, "the namespace of the node"),
+    *_PROCESS[1:],
+    _one("args", _TEXT, "the command line arguments"),
+    _one("ros_args", _TEXT, "the arguments after --ros-args"),
+    _one("exec_name", _NAME, "the name of the process in the log"),
+)
+_NAMED_NODE = tuple(
+    _required(rule.name, rule.type, rule.meaning) if rule.name in ("name", "namespace") else rule for rule in _NODE
+)
+_IN_NODE = (_PARAM, _REMAP, _ENV)
+_COMPOSABLE = _action(
+    "composable_node",
+    "a node that the container loads as a component",
+    _required("pkg", ValueType("name of a package"), "the package of the component"),
+    _required("plugin", ValueType("name of a class"), "the class of the component"),
+    _usual("name", _NAME, "the name of the node"),
+    _one("namespace", _NAME, "the namespace of the node"),
+    children=(
+        _PARAM,
+        _REMAP,
+        _pair("extra_arg", "an option of the container for the node, such as use_intra_process_comms"),
+    ),
+)
+_GZ_CONTAINER = tuple(
+    _one(name, kind, meaning, default)
+    for name, kind, meaning, default in (
+        ("container_name", _NAME, "the name of the container of the nodes", "ros_gz_container"),
+        ("create_own_container", _TRUTH, "whether a container is started", "false"),
+        ("use_composition", _TRUTH, "whether the node is loaded into a container", "false"),
+    )
+)
+_PLAIN = (
+    _action(
+        "arg",
+        "an argument of the launch file, which its caller can set",
+        _required("name", _NAME, "the name in $(var NAME)"),
+        _usual("default", _TEXT, "the value if the caller gives none; without a default the argument is required"),
+        _usual("description", _TEXT, "a description for --show-args"),
+        children=(_element("choice", "an allowed value", _required("value", _TEXT, "the value")),),
+    ),
+    _action(
+        "node",
+        "starts a node",
+        *_NODE,
+        children=_IN_NODE,
+    ),
+    _action(
+        "include",
+        "includes another launch file",
+        _required("file", _PATH, "the launch file, in any language"),
+        children=(
+            _pair("arg", "a value for an argument of the included file", "the name of the argument"),
+            _pair("let", "a value for an argument of the included file", "the name of the argument"),
+        ),
+    ),
+    _action(
+        "let",
+        "sets a launch configuration",
+        _required("name", _NAME, "the name in $(var NAME)"),
+        _required("value", _TEXT, "the value"),
+    ),
+    _action(
+        "executable",
+        "starts a program that is not a node",
+        _required("cmd", _TEXT, "the command line"),
+        *_PROCESS,
+        children=(_ENV,),
+    ),
+    _action(
+        "push_ros_namespace",
+        "adds a namespace to all later nodes in the scope",
+        _required("namespace", _NAME, "the namespace"),
+    ),
+    _action(
+        "set_parameter",
+        "sets a parameter of all later nodes in the scope",
+        _required("name", _NAME, "the name of the parameter"),
+        _required("value", _TEXT, "the value, whose type follows from its form as in YAML"),
+    ),
+    _action(
+        "set_remap",
+        "adds another name to all later nodes in the scope",
+        _required("from", _NAME, "the name in the program"),
+        _required("to", _NAME, "the name in the graph"),
+    ),
+    _action(
+        "set_parameters_from_file",
+        "sets the parameters in a YAML file for all later nodes in the scope",
+        _required("filename", _PATH, "the YAML file"),
+    ),
+    _action(
+        "set_use_sim_time",
+        "sets use_sim_time of all later nodes in the scope",
+        _required("value", _TRUTH, "whether nodes use simulated time"),
+    ),
+    _action(
+        "node_container",
+        "starts a container and loads nodes into it",
+        *_NAMED_NODE,
+        children=(_COMPOSABLE, *_IN_NODE),
+    ),
+    _action(
+        "load_composable_node",
+        "loads nodes into a container that runs",
+        _required("target", _NAME, "the name of the container"),
+        children=(_COMPOSABLE,),
+    ),
+    _action(
+        "lifecycle_node",
+        "starts a managed node",
+        *_NAMED_NODE,
+        _one("autostart", _TRUTH, "whether the node is configured and activated", "false"),
+        children=_IN_NODE,
+    ),
+    _action(
+        "set_env",
+        "sets an environment variable of all later processes",
+        _required("name", _NAME, "the name of the variable"),
+        _required("value", _TEXT, "the value"),
+    ),
+    _action("unset_env", "removes an environment variable", _required("name", _NAME, "the name of the variable")),
+    _action(
+        "append_env",
+        "adds a value to an environment variable with a list",
+        _required("name", _NAME, "the name of the variable"),
+        _required("value", _TEXT, "the value"),
+        _one("prepend", _TRUTH, "whether the value comes first", "false"),
+        _one("separator", _TEXT, "the text between two values", ":"),
+    ),
+    _action("rep_env", "replaces all environment variables", children=(_ENV,)),
+    _action("push_env", "saves the environment variables"),
+    _action("pop_env", "restores the environment variables that push_env has saved"),
+    _action("reset_env", "restores the environment variables of the start"),
+    _action("unset", "removes a launch configuration", _required("name", _NAME, "the name in $(var NAME)")),
+    _action(
+        "reset",
+        "removes all launch configurations except some",
+        children=(_pair("keep", "a launch configuration that is kept"),),
+    ),
+    _action(
+        "bool_arg",
+        "an argument of the launch file that is true or false",
+        _required("name", _NAME, "the name in $(var NAME)"),
+        _usual("default", _TRUTH, "the value if the caller gives none; without a default the argument is required"),
+        _usual("description", _TEXT, "a description for --show-args"),
+    ),
+    _action(
+        "log",
+        "writes a line to the log",
+        _required("level", ValueType("level of a log"), "the level"),
+        _required("message", _TEXT, "the line"),
+    ),
+    *(
+        _action(f"log_{level}", f"writes a line to the log at level {level}", _required("message", _TEXT, "the line"))
+        for level in ("info", "debug", "warning", "error")
+    ),
+    _action("shutdown", "ends the launch", _one("reason", _TEXT, "the reason for the log", "no reason given")),
+    _action(
+        "set_ros_log_dir",
+        "changes the log folder of later processes",
+        _required("new_log_dir", _PATH, "the folder"),
+    ),
+    _action(
+        "gz_server",
+        "starts Gazebo without a window",
+        _usual("world_sdf_file", _PATH, "the world"),
+        _one("world_sdf_string", _TEXT, "the world as text"),
+        *_GZ_CONTAINER,
+    ),
+    _action(
+        "gz_spawn_model",
+        "spawns a model in Gazebo",
+        *(
+            _one(name, kind, meaning)
+            for name, kind, meaning in (
+                ("world", _NAME, "the name of the world"),
+                ("file", _PATH, "the file of the model"),
+                ("model_string", _TEXT, "the model as text"),
+                ("topic", _NAME, "the topic with the model, such as /robot_description"),
+                ("entity_name", _NAME, "the name of the model in the world"),
+            )
+        ),
+        _one("allow_renaming", _TRUTH, "whether the model gets another name if its name is taken", "false"),
+        *(_one(name, _NUMBER, "the position of the model", "0", "m") for name in "xyz"),
+        *(_one(name, _NUMBER, "the orientation of the model", "0", "rad") for name in ("roll", "pitch", "yaw")),
+    ),
+    _action(
+        "ros_gz_bridge",
+        "starts a bridge between topics of Gazebo and of ROS",
+        _required("bridge_name", _NAME, "the name of the node"),
+        _required("config_file", _PATH, "the YAML file with the topics"),
+        _one("namespace", _NAME, "the namespace of the node"),
+        _one("log_level", ValueType("level of a log"), "the level", "info"),
+        _one("use_respawn", _TRUTH, "whether the process is started again when it ends", "false"),
+        _one("bridge_params", _TEXT, "further parameters of the node"),
+        *_GZ_CONTAINER,
+        children=(_PARAM,),
+    ),
+)
+_DEPTH = 6
+"""How deep elements with actions are nested in the table; deeper elements have no rules."""
+
+
+def _actions() -> tuple[ElementRule, ...]:
+    """Return the rules of all actions, where those that contain actions contain the same ones again."""
+    inner = _PLAIN
+    for _ in range(_DEPTH):
+        inner = (*_PLAIN, *_containers(inner))
+    return inner
+
+
+def _containers(inner: tuple[ElementRule, ...]) -> tuple[ElementRule, ...]:
+    period = (
+        _required("period", _NUMBER, "the time in seconds"),
+        _one("cancel_on_shutdown", _TRUTH, "whether a shutdown ends the wait", "true"),
+    )
+    return (
+        _action(
+            "group",
+            "actions with a condition, or with a scope of their own",
+            _one("scoped", _TRUTH, "whether settings inside end with the group", "true"),
+            _one("forwarding", _TRUTH, "whether settings from outside apply inside", "true"),
+            children=(*inner, _pair("keep", "a launch configuration of the group")),
+            nests=True,
+        ),
+        _action("timer", "executes actions after a time", *period, children=inner),
+        _action("ros_timer", "executes actions after a time of ROS, which may be simulated", *period, children=inner),
+        _action(
+            "for_each",
+            "repeats actions for each entry of a list; $(for-var NAME) is its value",
+            _required("values", _TEXT, "the entries, such as name: a; name: b"),
+            children=inner,
+        ),
+        _action(
+            "for",
+            "repeats actions; $(index NAME) is the number from 0",
+            _required("len", _INTEGER, "the number of repetitions"),
+            _required("name", _NAME, "the name in $(index NAME)"),
+            children=inner,
+        ),
+    )
+
+
+LAUNCH = ElementRule(
+    "launch",
+    "the root of a launch file",
+    (_one("version", _TEXT, "the version of the format"), _one("deprecated", _TEXT, "a warning for the callers")),
+    _actions(),
+)
+"""The rule of the root element of a launch file."""
+
+_TRUTHS = ("true", "false")
+_OUTPUTS = ("screen", "log", "both", "own_log", "full")
+_LEVELS = ("info", "debug", "warning", "error", "critical")
+_CHOICES = {
+    "output": _OUTPUTS,
+    "on_exit": ("shutdown",),
+    "level": _LEVELS,
+    "log_level": ("info", "debug", "warn", "error", "fatal"),
+    "type": ("str", "int", "float", "bool", "list_of_str", "list_of_int", "list_of_float", "list_of_bool"),
+}
+
+
+def choices_of(rule: AttributeRule) -> tuple[str, ...]:
+    """Return the fixed values of an attribute of a launch file, the usual ones first; empty if it has any value."""
+    return _TRUTHS if rule.type is _TRUTH else _CHOICES.get(rule.name, ())

@@ -1,0 +1,125 @@
+"""Texts with ``$(...)`` of launch files in XML and YAML: the substitution at a cursor, and paths that they lead to."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from linkwright.packages import PackageFinder
+
+_WHOLE = re.compile(r"\$\(\s*([\w-]+)(?:\s+([^()]*?))?\s*\)")
+_MARK = re.compile(r"\$\(|\)")
+_WORD = re.compile(r"""(?:\$\((?:[^()]|\$\([^()]*\))*\)|[^\s"'\[\],;])+""")
+_DEEPEST = 8
+
+
+@dataclass(frozen=True, slots=True)
+class Substitution:
+    """A ``$(...)`` that is not closed before the cursor.
+
+    Attributes:
+        command: the word behind the parenthesis, as far as it is typed.
+        arguments: the typed arguments, the last one up to the cursor; empty while the command is typed.
+        start: the offset of the command in the text.
+    """
+
+    command: str
+    arguments: tuple[str, ...]
+    start: int
+
+    @property
+    def typed(self) -> str:
+        """The word that ends at the cursor."""
+        return self.arguments[-1] if self.arguments else self.command
+
+
+def open_substitution(typed: str) -> Substitution | None:
+    """Return the innermost ``$(...)`` around the end of a text, or None if all are closed."""
+    opened: list[int] = []
+    for mark in _MARK.finditer(typed):
+        if mark[0] == ")":
+            opened = opened[:-1]
+        else:
+            opened.append(mark.end())
+    if not opened:
+        return None
+    inner = typed[opened[-1] :]
+    command, space, rest = inner.lstrip().partition(" ")
+    start = opened[-1] + len(inner) - len(inner.lstrip())
+    return Substitution(command, tuple(rest.split(" ")) if space else (), start)
+
+
+def substitution_around(text: str, offset: int) -> re.Match[str] | None:
+    """Return the innermost closed ``$(...)`` around an offset: its command, and its arguments or None."""
+    return next((found for found in _WHOLE.finditer(text) if found.start() <= offset <= found.end()), None)
+
+
+def evaluated(text: str, file: Path, finder: PackageFinder, configurations: Mapping[str, str | None]) -> str | None:
+    """Return a text with its substitutions replaced; None if one of them is not known.
+
+    Args:
+        text: the text.
+        file: the launch file.
+        finder: finds packages.
+        configurations: name -> value of ``$(var NAME)``, which may contain substitutions.
+    """
+
+    def value(found: re.Match[str]) -> str:
+        command, argument = found[1], (found[2] or "").strip("'\" ")
+        if command in ("find-pkg-share", "find"):
+            share = finder.find(argument)
+            return found[0] if share is None else str(share)
+        if command == "dirname":
+            return str(file.parent)
+        if command in ("var", "arg"):
+            known = configurations.get(argument.partition(" ")[0])
+            return found[0] if known is None else known
+        return found[0]
+
+    for _ in range(_DEEPEST):
+        replaced = _WHOLE.sub(value, text)
+        if replaced == text or len(replaced) > len(text) + 10_000:
+            break
+        text = replaced
+    return None if "$(" in text else text
+
+
+def path_words(text: str) -> Iterator[tuple[int, int]]:
+    """Yield the start and end of each word of a text; a ``$(...)`` is part of a word with all its arguments."""
+    for found in _WORD.finditer(text):
+        yield found.span()
+
+
+def typed_word(typed: str) -> str:
+    """Return the word that ends at the end of a text whose substitutions are all closed."""
+    for start, end in path_words(typed):
+        if end == len(typed):
+            return typed[start:]
+    return ""
+
+
+@cache
+def substitution_names() -> Mapping[str, str]:
+    """Return the names of all substitutions, each with the first line of its documentation."""
+    from linkwright.launch.frontend.extensions import ACTIONS, load
+    from linkwright.launch.model.markup.expose import substitution_parse_methods
+
+    for _ in load(ACTIONS):
+        pass
+    return {name: _purpose(method) for name, method in sorted(substitution_parse_methods.items(), key=_rank)}
+
+
+def _purpose(method: Callable[..., Any]) -> str:
+    owner = getattr(method, "__self__", method)
+    return (getattr(owner, "__doc__", None) or "").partition("\n")[0].replace("``", "`")
+
+
+_USUAL = ("var", "find-pkg-share", "env", "dirname", "eval", "command", "find-exec", "exec-in-pkg", "path-join")
+
+
+def _rank(entry: tuple[str, object]) -> tuple[int, str]:
+    return (_USUAL.index(entry[0]) if entry[0] in _USUAL else len(_USUAL)), entry[0]

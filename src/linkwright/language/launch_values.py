@@ -1,0 +1,377 @@
+"""Values in launch files in XML and YAML: packages, executables, paths, substitutions and arguments."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+
+from linkwright.language.completion import Completion, ItemKind
+from linkwright.language.format import Document, Target
+from linkwright.language.grammar import rule_at
+from linkwright.language.hover import Explanation
+from linkwright.language.launch_arguments import LaunchArgument, arguments_in, likely_values
+from linkwright.language.launch_schema import LAUNCH, choices_of
+from linkwright.language.launch_text import (
+    evaluated,
+    open_substitution,
+    path_words,
+    substitution_around,
+    substitution_names,
+    typed_word,
+)
+from linkwright.language.links import FileReference
+from linkwright.language.offers import (
+    explain_file,
+    explain_package,
+    explain_program,
+    offer_components,
+    offer_files,
+    offer_packages,
+    offer_programs,
+    offer_values,
+    target_of_component,
+    target_of_file,
+    target_of_package,
+    target_of_program,
+)
+from linkwright.language.parameter_catalogue import node_parameters
+from linkwright.packages.share_layout import source_of
+from linkwright.schema import describe_attribute
+
+_PACKAGES = frozenset({"find-pkg-share", "find-pkg-prefix", "find"})
+_VARIABLES = frozenset({"var", "arg"})
+_USE = re.compile(r"\$\((?:var|arg)\s+([\w./-]+)")
+_PATHS = frozenset({"file", "from", "filename", "world_sdf_file", "config_file", "new_log_dir", "cwd"})
+_INTO_ARGUMENTS = frozenset({"arg", "let"})
+_WITH_VARIABLES = frozenset({"value", "default", "args", "cmd", "if", "unless", "namespace", "ros_args"})
+_BEGINNINGS = ("$(find-pkg-share ", "$(dirname)/")
+
+
+@dataclass(frozen=True, slots=True)
+class LaunchValue:
+    """A value in a launch file, with the element that has it.
+
+    Attributes:
+        tags: the names of the elements around it, the last of which has the value.
+        name: the name of the attribute.
+        text: the whole value.
+        start: the offset of the value.
+        offset: the offset of the place in it.
+        given: the attributes of the element.
+        parent: the attributes of the element around the element.
+        siblings: the names of the other elements with the same tag in that one.
+    """
+
+    tags: tuple[str, ...]
+    name: str
+    text: str
+    start: int
+    offset: int
+    given: Mapping[str, str]
+    parent: Mapping[str, str]
+    siblings: frozenset[str] = frozenset()
+
+    @property
+    def typed(self) -> str:
+        """The part of the value before the place."""
+        return self.text[: max(0, self.offset - self.start)]
+
+    @property
+    def is_included(self) -> bool:
+        """Whether the element is an argument for an included file."""
+        return self.tags[-1] in _INTO_ARGUMENTS and "include" in self.tags[:-1]
+
+
+@dataclass
+class LaunchText:
+    """A launch file in XML or YAML, with what it declares."""
+
+    document: Document
+    offered: set[str] = field(default_factory=set)
+
+    @cached_property
+    def arguments(self) -> list[LaunchArgument]:
+        """The arguments and launch configurations that the file declares."""
+        return arguments_in(self.document.text, self.document.file)
+
+    @cached_property
+    def configurations(self) -> Mapping[str, str | None]:
+        """The values of ``$(var NAME)`` as far as they are known."""
+        return {argument.name: argument.default for argument in self.arguments}
+
+    def used_names(self, apart: int) -> list[str]:
+        """Return the names in ``$(var NAME)`` that the file does not declare, except the one at an offset."""
+        found = (use for use in _USE.finditer(self.document.text) if use.start(1) != apart)
+        return [name for name in dict.fromkeys(use[1] for use in found) if name not in self.configurations]
+
+    def path_of(self, written: str) -> Path | None:
+        """Return the path of a text, relative to the folder of the file; None if it is not known."""
+        text = evaluated(written, self.document.file, self.document.finder, self.configurations)
+        return None if not text or "\0" in text else self.document.file.parent / text
+
+    def included_arguments(self, value: LaunchValue) -> list[LaunchArgument]:
+        """Return the arguments of the file that the ``include`` around a value includes."""
+        written = value.parent.get("file", "")
+        path = self.path_of(written) if written else None
+        if path is None or not path.is_file():
+            return []
+        path = Path(source_of(str(path)))
+        found = arguments_in(self.document.other(path), path)
+        return [argument for argument in found if argument.is_argument]
+
+    def package_of(self, value: LaunchValue) -> str | None:
+        """Return the package of the element that has a value."""
+        written = value.given.get("pkg", "")
+        return evaluated(written, self.document.file, self.document.finder, self.configurations) if written else None
+
+
+# --- completion -----------------------------------------------------------------------------------------------
+
+
+def complete_value(launch: LaunchText, value: LaunchValue) -> Iterator[Completion]:
+    """Yield the completions in a value of a launch file."""
+    substitution = open_substitution(value.typed)
+    if substitution is None:
+        yield from _values(launch, value)
+        return
+    start = value.offset - len(substitution.typed)
+    if not substitution.arguments:
+        for name, purpose in substitution_names().items():
+            yield Completion(name, ItemKind.FUNCTION, start, purpose)
+    elif substitution.command in _PACKAGES:
+        yield from offer_packages(launch.document, start)
+    elif substitution.command in _VARIABLES and len(substitution.arguments) == 1:
+        yield from _offer_arguments(launch.arguments, start)
+        for name in launch.used_names(start):
+            yield Completion(name, ItemKind.NAME, start)
+    elif substitution.command == "exec-in-pkg" and len(substitution.arguments) > 1:
+        yield from offer_packages(launch.document, start)
+    elif substitution.command == "find-exec":
+        yield from offer_values(("xacro", "python3", "ros2"), start)
+
+
+def _offer_arguments(arguments: Iterable[LaunchArgument], start: int) -> Iterator[Completion]:
+    for argument in arguments:
+        detail = "" if argument.default is None else argument.default
+        yield Completion(argument.name, ItemKind.NAME, start, detail, argument.described())
+
+
+def _values(launch: LaunchText, value: LaunchValue) -> Iterator[Completion]:
+    document, offset, name, start = launch.document, value.offset, value.name, value.start
+    rule = rule_at(LAUNCH, value.tags)
+    attribute = None if rule is None else rule.attribute_rules.get(name)
+    if name == "pkg":
+        yield from offer_packages(document, start)
+    elif name == "exec":
+        yield from offer_programs(document, launch.package_of(value), start)
+    elif name == "plugin":
+        yield from offer_components(document, launch.package_of(value), start)
+    elif value.is_included and name == "name":
+        found = launch.included_arguments(value) or launch.arguments
+        yield from _offer_arguments((each for each in found if each.name not in value.siblings), start)
+    elif name in ("if", "unless"):
+        yield from _offer_variables(launch, start, [each for each in launch.arguments if each.is_condition])
+        yield from offer_values(("true", "false"), start)
+    elif attribute is not None and choices_of(attribute):
+        yield from offer_values(choices_of(attribute), start)
+    elif name in ("value", "default"):
+        if value.is_included:
+            yield from _offer_variables(launch, start, _named(launch.arguments, value.given.get("name", "")))
+        yield from offer_values(_choices(launch, value), start)
+    elif value.tags[-1] in ("param", "set_parameter") and name == "name":
+        yield from _offer_parameters(value)
+    yield from _offer_texts(launch, value, offset)
+
+
+def _offer_texts(launch: LaunchText, value: LaunchValue, offset: int) -> Iterator[Completion]:
+    """Yield paths that continue the word at a place, and variables."""
+    word, name = typed_word(value.typed), value.name
+    if name in _PATHS:
+        yield from offer_values((begin for begin in _BEGINNINGS if begin.startswith(word)), offset - len(word))
+    if "/" in word or name in _PATHS:
+        yield from _offer_path(launch, word, offset, launch_files=value.tags[-1] == "include")
+    if (name in _PATHS or name in _WITH_VARIABLES) and (not word or word.startswith("$")):
+        yield from _offer_variables(launch, offset - len(word), launch.arguments)
+
+
+def _offer_variables(launch: LaunchText, start: int, arguments: Iterable[LaunchArgument]) -> Iterator[Completion]:
+    """Yield arguments as substitutions, those that an earlier call has yielded left out."""
+    for argument in arguments:
+        if argument.name not in launch.offered:
+            launch.offered.add(argument.name)
+            yield Completion(f"$(var {argument.name})", ItemKind.NAME, start, argument.default or "")
+
+
+def _offer_parameters(value: LaunchValue) -> Iterator[Completion]:
+    """Yield the parameters of the node around a value, as far as they are known."""
+    names = (value.parent.get("exec", ""), value.parent.get("name", ""))
+    known = next((found for name in names if (found := node_parameters(name))), ())
+    for parameter in known:
+        if parameter.name not in value.siblings and "*" not in parameter.name:
+            detail = f"{parameter.type} {parameter.written_default}".strip()
+            yield Completion(parameter.name, ItemKind.NAME, value.start, detail, parameter.description)
+    if not any(parameter.name == "use_sim_time" for parameter in known):
+        yield Completion("use_sim_time", ItemKind.NAME, value.start, "bool false")
+
+
+def _choices(launch: LaunchText, value: LaunchValue) -> tuple[str, ...]:
+    """Return the likely values of an argument: its choices, or both values of a condition."""
+    name = value.given.get("name", "")
+    if not value.is_included:
+        return likely_values(None, name, launch.document.text) if value.name == "default" else _truths(name)
+    argument = next((each for each in launch.included_arguments(value) if each.name == name), None)
+    return () if argument is None else likely_values(argument, name, launch.document.text)
+
+
+def _truths(name: str) -> tuple[str, ...]:
+    return ("true", "false") if name.startswith(("use_", "enable", "is_", "publish_")) else ()
+
+
+def _offer_path(launch: LaunchText, word: str, offset: int, *, launch_files: bool) -> Iterator[Completion]:
+    folder, slash, name = word.rpartition("/")
+    if slash and not folder:
+        return
+    base = launch.path_of(folder) if folder else launch.document.file.parent
+    if base is not None:
+        yield from offer_files(base, name, offset, launch_files=launch_files)
+
+
+# --- hover and definition -------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class _Place:
+    """The meaning of a place in a launch file.
+
+    Attributes:
+        kind: "package", "program", "component", "argument", "file" or "substitution".
+        name: the name or path.
+        start: the offset of the name.
+        end: the offset behind it.
+        package: the package of a program or component.
+        arguments: the arguments with the name.
+    """
+
+    kind: str
+    name: str
+    start: int
+    end: int
+    package: str | None = None
+    arguments: tuple[LaunchArgument, ...] = ()
+
+
+def _place_at(launch: LaunchText, value: LaunchValue) -> _Place | None:
+    around = substitution_around(value.text, value.offset - value.start)
+    place = None if around is None else _in_substitution(launch, around, value.offset - value.start)
+    if place is not None:
+        return replace(place, start=value.start + place.start, end=value.start + place.end)
+    return _of_attribute(launch, value)
+
+
+def _in_substitution(launch: LaunchText, around: re.Match[str], offset: int) -> _Place | None:
+    command, arguments = around[1], (around[2] or "").strip("'\" ")
+    if offset <= around.end(1):
+        return _Place("substitution", command, *around.span(1)) if command in substitution_names() else None
+    name = arguments.partition(" ")[0]
+    start = around.start(2) + (around[2] or "").find(name) if around[2] else around.end(1)
+    place = start, start + len(name)
+    if command in _PACKAGES:
+        return _Place("package", name, *place)
+    if command in _VARIABLES:
+        return _Place("argument", name, *place, arguments=_named(launch.arguments, name))
+    if command == "exec-in-pkg" and " " in arguments:
+        return _Place("program", name, *place, package=arguments.split()[-1])
+    return None
+
+
+def _named(arguments: Iterable[LaunchArgument], name: str) -> tuple[LaunchArgument, ...]:
+    return tuple(argument for argument in arguments if argument.name == name)
+
+
+def _of_attribute(launch: LaunchText, value: LaunchValue) -> _Place | None:
+    name, begin = value.name, value.start
+    whole = begin, begin + len(value.text)
+    kinds = {"pkg": "package", "exec": "program", "plugin": "component"}
+    if name in kinds:
+        return _Place(kinds[name], value.text, *whole, package=launch.package_of(value))
+    if name == "name" and value.tags[-1] in _INTO_ARGUMENTS:
+        found = launch.included_arguments(value) if value.is_included else launch.arguments
+        return _Place("argument", value.text, *whole, arguments=_named(found, value.text))
+    for start, end in path_words(value.text):
+        word = value.text[start:end]
+        if begin + start <= value.offset <= begin + end and ("/" in word or name in _PATHS):
+            path = launch.path_of(word)
+            if path is not None and (path.exists() or name in _PATHS):
+                return _Place("file", str(path), begin + start, begin + end)
+    return None
+
+
+def explain_value(launch: LaunchText, value: LaunchValue) -> Explanation | None:
+    """Explain what is at a place in a value, or else the attribute; None if there is nothing to say."""
+    place = _place_at(launch, value)
+    text = None if place is None else _explanation(launch.document, place)
+    if place is not None and text:
+        return Explanation(text, place.start, place.end)
+    end = value.start + len(value.text)
+    if value.tags[-1] in ("param", "set_parameter") and value.name in ("name", "value"):
+        names = (value.parent.get("exec", ""), value.parent.get("name", ""))
+        known = (parameter for name in names for parameter in node_parameters(name))
+        parameter = next((each for each in known if each.matches(value.given.get("name", ""))), None)
+        if parameter is not None:
+            default = f" = `{parameter.written_default}`" if parameter.written_default else ""
+            head = f"**{parameter.name}**: {parameter.type}{default}"
+            return Explanation(f"{head}\n\n{parameter.description}".strip(), value.start, end)
+    rule = rule_at(LAUNCH, value.tags)
+    attribute = None if rule is None else rule.attribute_rules.get(value.name)
+    return None if attribute is None else Explanation(describe_attribute(attribute), value.start, end)
+
+
+def _explanation(document: Document, place: _Place) -> str | None:
+    if place.kind == "package":
+        return explain_package(document, place.name)
+    if place.kind == "program":
+        return explain_program(document, place.package, place.name)
+    if place.kind == "argument":
+        return "\n\n".join(argument.described() for argument in place.arguments)
+    if place.kind == "file":
+        return explain_file(Path(place.name))
+    if place.kind == "substitution":
+        return f"**$({place.name} ...)**: {substitution_names()[place.name]}"
+    return None
+
+
+def define_value(launch: LaunchText, value: LaunchValue) -> Iterator[Target]:
+    """Yield where the name at a place in a value is defined."""
+    document, place = launch.document, _place_at(launch, value)
+    if place is None:
+        return
+    if place.kind == "package":
+        yield from target_of_package(document, place.name)
+    elif place.kind == "program":
+        yield from target_of_program(document, place.package, place.name)
+    elif place.kind == "component":
+        yield from target_of_component(document, place.package, place.name)
+    elif place.kind == "file":
+        yield from target_of_file(Path(place.name))
+    for argument in place.arguments:
+        yield Target(argument.file, argument.start, argument.end)
+
+
+def links_in(launch: LaunchText, name: str, text: str, begin: int) -> Iterator[FileReference]:
+    """Yield the references to files in a value.
+
+    Args:
+        launch: the launch file.
+        name: the name of the attribute.
+        text: the value.
+        begin: the offset of the value.
+    """
+    for start, end in path_words(text):
+        word = text[start:end]
+        if "/" in word or name in _PATHS:
+            path = launch.path_of(word)
+            if path is not None and path.is_file():
+                yield FileReference(begin + start, begin + end, Path(source_of(str(path))))

@@ -1,0 +1,116 @@
+"""Launch files in XML: the elements of their table, and the values of attributes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from linkwright.language.completion import Completion, complete
+from linkwright.language.cursor import Spot, cursor_at
+from linkwright.language.format import Document, Format, Symbol, SymbolKind, Target
+from linkwright.language.grammar import is_launch_file
+from linkwright.language.hover import Explanation, explain_at
+from linkwright.language.launch_values import (
+    LaunchText,
+    LaunchValue,
+    complete_value,
+    define_value,
+    explain_value,
+    links_in,
+)
+from linkwright.language.links import FileReference
+from linkwright.language.outline import Outline, OutlineElement
+from linkwright.xmltree.tokens import Kind, Token, tokens
+
+
+def _given(token: Token) -> dict[str, str]:
+    return {attribute.name: attribute.value or "" for attribute in token.attributes()}
+
+
+def _value_at(text: str, offset: int) -> LaunchValue | None:
+    """Return the value of an attribute at an offset, or None if there is none."""
+    cursor = cursor_at(text, offset)
+    if cursor.spot is not Spot.VALUE or cursor.attribute is None or cursor.token is None:
+        return None
+    token = cursor.token
+    parent = _parent_of(text, token)
+    siblings = [] if parent is None else parent.children
+    others = (_given(child.tag).get("name", "") for child in siblings if child.tag.start != token.start)
+    return LaunchValue(
+        cursor.tags,
+        cursor.attribute.name,
+        cursor.attribute.value or "",
+        cursor.attribute.value_start,
+        offset,
+        _given(token),
+        {} if parent is None else _given(parent.tag),
+        frozenset(others),
+    )
+
+
+def _parent_of(text: str, token: Token) -> OutlineElement | None:
+    """Return the element that contains a start tag, or None if there is none."""
+    around = [element for element in Outline.of(text).around(token.start) if element.tag.start < token.start]
+    return next((element for element in reversed(around) if element.end > token.start), None)
+
+
+def _complete(document: Document, offset: int) -> Iterator[Completion]:
+    value = _value_at(document.text, offset)
+    if value is not None:
+        yield from complete_value(LaunchText(document), value)
+    else:
+        yield from complete(document.text, offset, document.file, (), lambda: document.finder)
+
+
+def _explain(document: Document, offset: int) -> Explanation | None:
+    value = _value_at(document.text, offset)
+    found = None if value is None else explain_value(LaunchText(document), value)
+    return found or explain_at(document.text, offset, document.file, ())
+
+
+def _define(document: Document, offset: int) -> Iterator[Target]:
+    value = _value_at(document.text, offset)
+    if value is not None:
+        yield from define_value(LaunchText(document), value)
+
+
+def _links(document: Document) -> Iterator[FileReference]:
+    launch = LaunchText(document)
+    for token in tokens(document.text):
+        for attribute in token.attributes() if token.kind is Kind.START else ():
+            yield from links_in(launch, attribute.name, attribute.value or "", attribute.value_start)
+
+
+# --- symbols --------------------------------------------------------------------------------------------------
+
+_KINDS = {
+    "launch": SymbolKind.GROUP,
+    "group": SymbolKind.GROUP,
+    "include": SymbolKind.FILE,
+    "arg": SymbolKind.ARGUMENT,
+    "bool_arg": SymbolKind.ARGUMENT,
+    "let": SymbolKind.ARGUMENT,
+    "param": SymbolKind.FIELD,
+    "remap": SymbolKind.KEY,
+    "executable": SymbolKind.FUNCTION,
+    **dict.fromkeys(("node", "lifecycle_node", "composable_node", "node_container"), SymbolKind.NODE),
+}
+_DEEPEST = 50
+"""Elements that are nested deeper are left out of the symbols."""
+_NAMING = ("name", "exec", "plugin", "file", "from", "namespace", "target", "cmd")
+
+
+def _symbols(document: Document) -> Iterator[Symbol]:
+    return (_symbol(element, 0) for element in Outline.of(document.text).elements)
+
+
+def _symbol(element: OutlineElement, depth: int) -> Symbol:
+    given = _given(element.tag)
+    named = next((given[name] for name in _NAMING if given.get(name)), "")
+    kind = _KINDS.get(element.tag.name, SymbolKind.OBJECT)
+    children = tuple(_symbol(child, depth + 1) for child in element.children) if depth < _DEEPEST else ()
+    name = f"{element.tag.name} {named}".strip()
+    return Symbol(name, kind, element.tag.start, element.end, children, given.get("pkg", ""))
+
+
+LAUNCH_XML = Format(is_launch_file, _complete, _explain, _define, _links, _symbols)
+"""Launch files in XML."""

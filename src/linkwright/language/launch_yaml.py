@@ -1,0 +1,170 @@
+"""Launch files in YAML: the keys of the same table as in XML, and their values."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+from linkwright.language.completion import Completion, ItemKind
+from linkwright.language.format import Document, Format, Symbol, SymbolKind, Target
+from linkwright.language.grammar import rule_at
+from linkwright.language.hover import Explanation
+from linkwright.language.launch_schema import LAUNCH
+from linkwright.language.launch_values import (
+    LaunchText,
+    LaunchValue,
+    complete_value,
+    define_value,
+    explain_value,
+    links_in,
+)
+from linkwright.language.links import FileReference
+from linkwright.language.yaml_outline import Place, YamlCursor, YamlEntry, YamlOutline
+from linkwright.schema import describe_attribute, describe_element
+
+_CHILDREN = "children"
+"""The key of the actions in a timer or a loop."""
+_NAMING = ("name", "exec", "plugin", "file", "from", "namespace", "target", "cmd")
+_DEEPEST = 20
+
+
+def is_yaml_launch_file(path: Path) -> bool:
+    """Return whether a file is a launch file in YAML, by its name."""
+    stem = path.name.removesuffix(".yaml").removesuffix(".yml")
+    return stem != path.name and (stem == "launch" or stem.endswith((".launch", "_launch")))
+
+
+def _tags(entry: YamlEntry) -> tuple[str, ...]:
+    return tuple(key for key in entry.path if key != _CHILDREN)
+
+
+def _given(entry: YamlEntry | None) -> Mapping[str, str]:
+    return {} if entry is None else {child.key: child.scalar for child in entry.children if child.key and child.value}
+
+
+def _element_around(entry: YamlEntry) -> YamlEntry | None:
+    """Return the entry of the element that contains the element of an entry, or None for the outermost."""
+    above = entry.parent
+    while above is not None and (not above.key or above.key in (_CHILDREN, entry.key)):
+        above = above.parent
+    return above
+
+
+def _value_of(cursor: YamlCursor) -> LaunchValue | None:
+    """Return the value at a place, or None if the place is in no value."""
+    entry = cursor.within
+    element = entry.parent
+    if cursor.place is not Place.VALUE or not entry.key or element is None or _is_new_item(cursor):
+        return None
+    tags = _tags(entry)
+    if len(tags) < 2:
+        return None
+    text = entry.scalar if entry.scalar.startswith(cursor.typed) and not cursor.in_list else cursor.typed
+    owner = element.parent if element.is_item and element.parent is not None else element
+    others = owner.children if element.is_item else []
+    names = (name.scalar for item in others if item is not element and (name := item.child("name")) is not None)
+    parent = _given(_element_around(owner))
+    return LaunchValue(
+        tags[:-1], tags[-1], text, cursor.start, cursor.offset, _given(element), parent, frozenset(names)
+    )
+
+
+def _complete(document: Document, offset: int) -> Iterator[Completion]:
+    cursor = YamlOutline(document.text).cursor(offset)
+    value = _value_of(cursor)
+    if value is not None:
+        yield from complete_value(LaunchText(document), value)
+    elif cursor.place is Place.KEY or _is_new_item(cursor):
+        yield from _keys(cursor)
+
+
+def _is_new_item(cursor: YamlCursor) -> bool:
+    """Return whether the first key of an item of a list of elements is typed."""
+    return cursor.place is Place.VALUE and cursor.in_list and rule_at(LAUNCH, _tags(cursor.within)) is not None
+
+
+def _keys(cursor: YamlCursor) -> Iterator[Completion]:
+    within = cursor.within
+    tags = _tags(within)
+    if not tags:
+        yield Completion(LAUNCH.tag, ItemKind.ELEMENT, cursor.start, "", describe_element(LAUNCH))
+        return
+    rule = rule_at(LAUNCH, tags)
+    if rule is None:
+        return
+    given = {child.key for child in within.children if child is not cursor.entry}
+    owner = within.parent if within.is_item and within.parent is not None else within
+    is_action_list = owner.key in _LISTS and (within.is_item or _is_new_item(cursor))
+    for attribute in () if is_action_list or not within.parent else rule.attributes:
+        if attribute.name not in given:
+            snippet = "" if cursor.entry is not None else f'{attribute.name}: "$1"$0'
+            described = describe_attribute(attribute)
+            yield Completion(attribute.name, ItemKind.ATTRIBUTE, cursor.start, attribute.type.name, described, snippet)
+    for child in rule.child_rules.values():
+        if child.tag not in given and child.tag != rule.tag:
+            snippet = "" if cursor.entry is not None else f"{child.tag}:$0"
+            yield Completion(child.tag, ItemKind.ELEMENT, cursor.start, "", describe_element(child), snippet)
+
+
+_LISTS = frozenset({LAUNCH.tag, "group", _CHILDREN})
+"""Keys whose items are actions."""
+
+
+def _explain(document: Document, offset: int) -> Explanation | None:
+    cursor = YamlOutline(document.text).cursor(offset)
+    value = _value_of(cursor)
+    if value is not None:
+        return explain_value(LaunchText(document), value)
+    entry = cursor.entry
+    if cursor.place is not Place.KEY or entry is None:
+        return None
+    tags = _tags(entry)
+    rule, parent = rule_at(LAUNCH, tags), rule_at(LAUNCH, tags[:-1])
+    end = entry.start + len(entry.key)
+    attribute = None if parent is None or entry.children else parent.attribute_rules.get(entry.key)
+    if attribute is not None:
+        return Explanation(describe_attribute(attribute), entry.start, end)
+    return None if rule is None else Explanation(describe_element(rule), entry.start, end)
+
+
+def _define(document: Document, offset: int) -> Iterator[Target]:
+    value = _value_of(YamlOutline(document.text).cursor(offset))
+    if value is not None:
+        yield from define_value(LaunchText(document), value)
+
+
+def _links(document: Document) -> Iterator[FileReference]:
+    launch = LaunchText(document)
+    for entry in YamlOutline(document.text).root.all():
+        if entry.key and entry.value and not entry.value.startswith(("[", "{")):
+            start = entry.value_start + (1 if entry.value[:1] in ("'", '"') else 0)
+            yield from links_in(launch, entry.key, entry.scalar, start)
+
+
+def _symbols(document: Document) -> Iterator[Symbol]:
+    yield from _actions(YamlOutline(document.text).root, 0)
+
+
+def _actions(entry: YamlEntry, depth: int) -> Iterator[Symbol]:
+    for child in entry.children if depth < _DEEPEST else ():
+        if child.is_item:
+            yield from _actions(child, depth + 1)
+        elif child.children:
+            given = _given(child)
+            named = next((given[name] for name in _NAMING if given.get(name)), "")
+            kind = SymbolKind.NODE if "exec" in given or "plugin" in given else _KINDS.get(child.key, SymbolKind.OBJECT)
+            inner = tuple(_actions(child, depth + 1))
+            yield Symbol(f"{child.key} {named}".strip(), kind, child.start, child.end, inner, given.get("pkg", ""))
+
+
+_KINDS = {
+    "launch": SymbolKind.GROUP,
+    "group": SymbolKind.GROUP,
+    "include": SymbolKind.FILE,
+    "arg": SymbolKind.ARGUMENT,
+    "let": SymbolKind.ARGUMENT,
+    "executable": SymbolKind.FUNCTION,
+}
+
+LAUNCH_YAML = Format(is_yaml_launch_file, _complete, _explain, _define, _links, _symbols)
+"""Launch files in YAML."""

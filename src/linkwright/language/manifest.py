@@ -1,0 +1,153 @@
+"""``package.xml``: names of packages in dependencies, build types and licences."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from linkwright.language.completion import Completion, ItemKind, complete
+from linkwright.language.cursor import Cursor, Spot, cursor_at
+from linkwright.language.format import Document, Format, Symbol, SymbolKind, Target
+from linkwright.language.grammar import rule_at
+from linkwright.language.hover import Explanation, explain_at
+from linkwright.language.links import FileReference
+from linkwright.language.manifest_schema import DEPENDING, PACKAGE
+from linkwright.language.offers import explain_package, offer_packages, offer_values, target_of_package
+from linkwright.language.outline import Outline
+from linkwright.packages.creation.licenses import known_licenses
+from linkwright.packages.manifest import MANIFEST
+
+_USUAL_LICENSES = ("Apache-2.0", "BSD-3-Clause", "MIT")
+_TEXTS = {
+    "build_type": ("ament_cmake", "ament_python", "cmake"),
+    "member_of_group": ("rosidl_interface_packages",),
+    "group_depend": ("rosidl_interface_packages",),
+    "version": ("0.1.0",),
+}
+_ATTRIBUTES = {"format": ("3", "2"), "type": ("website", "bugtracker", "repository")}
+_USUAL = {
+    "buildtool_depend": ("ament_cmake", "ament_cmake_python", "ament_cmake_auto", "rosidl_default_generators"),
+    "test_depend": (
+        *("ament_lint_auto", "ament_lint_common", "ament_copyright", "ament_flake8", "ament_pep257"),
+        *("python3-pytest", "ament_cmake_gtest", "ament_cmake_pytest", "launch_testing", "launch_testing_ament_cmake"),
+    ),
+    "depend": ("rclcpp", "rclpy", "std_msgs", "geometry_msgs", "sensor_msgs"),
+    "build_depend": ("rclcpp", "rosidl_default_generators"),
+    "exec_depend": (
+        *("rclpy", "launch", "launch_ros", "robot_state_publisher", "joint_state_publisher_gui", "xacro", "rviz2"),
+        *("ros2launch", "rosidl_default_runtime", "ros_gz_sim", "ros_gz_bridge", "controller_manager"),
+    ),
+}
+"""Dependencies that a tag usually has, whether or not the packages are found."""
+_DECLARED = re.compile(r"<(\w+)\b[^<>]*>\s*([\w.-]+)\s*</\1\s*>")
+
+
+def is_manifest(path: Path) -> bool:
+    """Return whether a file describes a package, by its name."""
+    return path.name == MANIFEST
+
+
+def _complete(document: Document, offset: int) -> Iterator[Completion]:
+    cursor = cursor_at(document.text, offset)
+    typed = cursor.typed.lstrip()
+    if cursor.spot is Spot.TEXT and cursor.tags and "\n" not in typed:
+        found = [*_texts(document, cursor.tags[-1], offset - len(typed))]
+        if found:
+            yield from found
+            return
+    if cursor.spot is Spot.VALUE and cursor.attribute is not None:
+        yield from offer_values(_ATTRIBUTES.get(cursor.attribute.name, ()), offset - len(cursor.typed))
+        return
+    given = _single_children(document.text, offset)
+    for item in complete(document.text, offset, document.file, (), lambda: document.finder):
+        if item.kind is not ItemKind.ELEMENT or item.label not in given:
+            yield item
+
+
+def _single_children(text: str, offset: int) -> set[str]:
+    """Return the elements in the element around an offset that it cannot have twice."""
+    around = []
+    for element in Outline.of(text).around(offset):
+        end = element.end if element.closing is None else element.closing.start
+        if element.tag.end <= offset <= end and not element.tag.is_whole:
+            around.append(element)
+    rule = rule_at(PACKAGE, [element.tag.name for element in around])
+    if rule is None or not around:
+        return set()
+    names = {child.tag.name for child in around[-1].children if not child.tag.start < offset <= child.tag.end}
+    return {name for name in names if name in rule.child_rules and not rule.child_rules[name].many}
+
+
+def _texts(document: Document, tag: str, start: int) -> Iterator[Completion]:
+    if tag in DEPENDING:
+        yield from _dependencies(document, tag, start)
+    elif tag == "license":
+        yield from offer_values(dict.fromkeys((*_USUAL_LICENSES, *known_licenses())), start)
+    elif tag == "name":
+        yield Completion(document.file.parent.name, ItemKind.PACKAGE, start)
+    else:
+        yield from offer_values(_TEXTS.get(tag, ()), start)
+
+
+def _dependencies(document: Document, tag: str, start: int) -> Iterator[Completion]:
+    """Yield packages: the usual ones of the tag, then those that are found; declared ones are left out."""
+    others = document.text[:start] + document.text[start:].partition("<")[2]
+    seen = {name for other, name in _DECLARED.findall(others) if other in (tag, "depend", "name")}
+    usual: Iterable[str] = _USUAL.get(tag, ())
+    for name in usual:
+        if name not in seen:
+            seen.add(name)
+            yield Completion(name, ItemKind.PACKAGE, start)
+    for item in offer_packages(document, start):
+        if item.label not in seen:
+            yield item
+
+
+def _dependency_at(document: Document, offset: int) -> tuple[str, int] | None:
+    """Return the package that a dependency at an offset names, and its offset."""
+    cursor: Cursor = cursor_at(document.text, offset)
+    if cursor.spot is not Spot.TEXT or not cursor.tags or cursor.tags[-1] not in {*DEPENDING, "name"}:
+        return None
+    begin = offset - len(cursor.typed)
+    text = document.text[begin:].partition("<")[0]
+    name = text.strip()
+    return (name, begin + text.index(name)) if name and "\n" not in name else None
+
+
+def _explain(document: Document, offset: int) -> Explanation | None:
+    found = _dependency_at(document, offset)
+    if found is None:
+        return explain_at(document.text, offset, document.file, ())
+    text = explain_package(document, found[0])
+    return Explanation(text, found[1], found[1] + len(found[0])) if text else None
+
+
+def _define(document: Document, offset: int) -> Iterator[Target]:
+    found = _dependency_at(document, offset)
+    if found is not None:
+        yield from target_of_package(document, found[0])
+
+
+def _links(document: Document) -> Iterator[FileReference]:
+    for element in Outline.of(document.text).all():
+        for attribute in element.tag.attributes() if element.tag.name == "license" else ():
+            file = document.file.parent / (attribute.value or "-")
+            if attribute.name == "file" and "\0" not in str(file) and file.is_file():
+                yield FileReference(attribute.value_start, attribute.value_end, file)
+
+
+def _symbols(document: Document) -> Iterator[Symbol]:
+    for package in Outline.of(document.text).elements:
+        children = []
+        for element in package.children:
+            inner = document.text[element.tag.end : element.closing.start] if element.closing is not None else ""
+            text = " ".join(inner.split()) if "<" not in inner else ""
+            kind = SymbolKind.PACKAGE if element.tag.name in DEPENDING else SymbolKind.FIELD
+            children.append(Symbol(element.tag.name, kind, element.tag.start, element.end, (), text[:60]))
+        name = next((child.detail for child in children if child.name == "name" and child.detail), package.tag.name)
+        yield Symbol(name, SymbolKind.GROUP, package.tag.start, package.end, tuple(children))
+
+
+PACKAGE_XML = Format(is_manifest, _complete, _explain, _define, _links, _symbols)
+"""``package.xml``."""

@@ -1,0 +1,120 @@
+"""Completions and explanations of packages, executables, components and files, for launch files of each language."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from linkwright.diagnostics import phrase
+from linkwright.diagnostics.translation import localized
+from linkwright.language.completion import Completion, ItemKind
+from linkwright.language.facts import mesh_facts, package_facts
+from linkwright.language.format import Document, Target
+from linkwright.language.programs import components_of, package_names, programs_of, replaced_packages
+from linkwright.messages.definitions.interfaces import is_package_name
+from linkwright.packages.manifest import MANIFEST
+from linkwright.packages.share_layout import source_of
+
+_SHOWN_FILES = 300
+_LAUNCH_FILES = (".launch.py", ".launch.xml", ".launch.yaml", ".launch", "_launch.py", "_launch.xml", "_launch.yaml")
+
+
+def offer_packages(document: Document, start: int) -> Iterator[Completion]:
+    """Yield all packages: the package of the file first, then those that it depends on.
+
+    Args:
+        document: the text.
+        start: the offset from which the typed text is replaced.
+    """
+    folders, replaced = document.finder.packages(), replaced_packages()
+    for name in package_names(document.finder, document.file):
+        origin = folders.get(name) or ("Linkwright" if name in replaced else MANIFEST)
+        yield Completion(name, ItemKind.PACKAGE, start, str(origin))
+
+
+def offer_programs(document: Document, package: str | None, start: int) -> Iterator[Completion]:
+    """Yield the executables of a package; none if the package is not known."""
+    for program in programs_of(document.finder, package).values() if package else ():
+        yield Completion(program.name, ItemKind.FUNCTION, start, program.origin)
+
+
+def offer_components(document: Document, package: str | None, start: int) -> Iterator[Completion]:
+    """Yield the components of a package; none if the package is not known."""
+    for name in components_of(document.finder, package) if package else ():
+        yield Completion(name, ItemKind.FUNCTION, start, package or "")
+
+
+def offer_values(values: Iterable[str], start: int) -> Iterator[Completion]:
+    """Yield fixed values."""
+    for value in values:
+        yield Completion(value, ItemKind.VALUE, start)
+
+
+def offer_files(base: Path, typed: str, offset: int, *, launch_files: bool = False) -> Iterator[Completion]:
+    """Yield the files and folders that a typed path can continue with: folders first, hidden ones left out.
+
+    Args:
+        base: the folder that the path starts at.
+        typed: the typed part of the path.
+        offset: the offset of the cursor, which is the end of the typed part.
+        launch_files: whether launch files come before other files.
+    """
+    below, _, name = typed.rpartition("/")
+    try:
+        entries = [entry for entry in (base / below.lstrip("/")).iterdir() if not entry.name.startswith(".")]
+        found = [(entry.is_file(), entry.name) for entry in entries]
+    except (OSError, ValueError):
+        return
+    found.sort(key=lambda entry: (launch_files and not entry[1].endswith(_LAUNCH_FILES), *entry))
+    for is_file, entry_name in found[:_SHOWN_FILES]:
+        yield Completion(entry_name, ItemKind.FILE if is_file else ItemKind.FOLDER, offset - len(name))
+
+
+def explain_package(document: Document, name: str) -> str | None:
+    """Return the description and folder of a package, or that it is not found, in Markdown; None for other texts."""
+    folder = document.finder.find(name)
+    if folder is None:
+        return localized(phrase("package '{name}' not found", name=name)) if is_package_name(name) else None
+    if not folder.is_dir():
+        return localized(phrase("**{name}**: nodes and modules of Linkwright replace this package", name=name))
+    return package_facts(document.finder, name)
+
+
+def explain_program(document: Document, package: str | None, name: str) -> str | None:
+    """Return where an executable comes from, in Markdown; None if it is not known."""
+    program = programs_of(document.finder, package).get(name) if package else None
+    return None if program is None else f"**{package} {name}**: `{program.origin}`"
+
+
+def explain_file(path: Path) -> str:
+    """Return whether a file exists, and what is known about a mesh, in Markdown."""
+    if not path.exists():
+        return localized(phrase("`{path}` does not exist", path=path))
+    return mesh_facts(path) or f"`{path}`"
+
+
+def target_of_package(document: Document, name: str) -> Iterator[Target]:
+    """Yield the ``package.xml`` of a package."""
+    folder = document.finder.find(name)
+    if folder is not None and (folder / MANIFEST).is_file():
+        yield Target(Path(source_of(str(folder / MANIFEST))))
+
+
+def target_of_program(document: Document, package: str | None, name: str) -> Iterator[Target]:
+    """Yield the source of an executable."""
+    program = programs_of(document.finder, package).get(name) if package else None
+    if program is not None and program.target is not None:
+        yield program.target
+
+
+def target_of_component(document: Document, package: str | None, name: str) -> Iterator[Target]:
+    """Yield where the package registers a component."""
+    target = components_of(document.finder, package).get(name) if package else None
+    if target is not None:
+        yield target
+
+
+def target_of_file(path: Path | None) -> Iterator[Target]:
+    """Yield a file, if it exists."""
+    if path is not None and path.is_file():
+        yield Target(Path(source_of(str(path))))

@@ -1,0 +1,214 @@
+"""The parameters of nodes, of their plugins and of controllers, with types, defaults and descriptions.
+
+Those of nodes and plugins come from ``node_parameters.json``, which ``tools/node_parameters.py`` records. Those of
+controllers come from the tables that the controllers declare, also of other packages.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass, replace
+from functools import cache
+from importlib import resources
+from inspect import cleandoc
+from typing import Any
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.loading.extensions import extensions
+
+MANAGER = "controller_manager"
+_CONTROLLERS = "linkwright.controllers"
+_FILE = "node_parameters.json"
+
+
+@dataclass(frozen=True, slots=True)
+class ParameterInfo:
+    """A parameter.
+
+    Attributes:
+        name: the name with dots; ``*`` is any name, as in ``gains.*.p``.
+        type: the type, as ROS 2 names it: ``double``, ``string_array``; empty if it is not known.
+        default: the default value; None if there is none.
+        description: the purpose, with its unit; may be empty.
+        choices: the allowed values; empty if any value of the type is allowed.
+        keys: the parameters that contain the names for ``*``.
+        owner: the node, plugin or controller that has the parameter.
+    """
+
+    name: str
+    type: str
+    default: Any = None
+    description: str = ""
+    choices: tuple[str, ...] = ()
+    keys: tuple[str, ...] = ()
+    owner: str = ""
+
+    def below(self, prefix: str, owner: str) -> ParameterInfo:
+        """Return the parameter with a prefix before its name."""
+        keys = tuple(f"{prefix}.{key}" for key in self.keys)
+        return replace(self, name=f"{prefix}.{self.name}", owner=owner, keys=keys)
+
+    def matches(self, name: str) -> bool:
+        """Return whether a name with dots is that of the parameter."""
+        own_parts, parts = self.name.split("."), name.split(".")
+        return len(own_parts) == len(parts) and all(
+            mark in ("*", part) for mark, part in zip(own_parts, parts, strict=True)
+        )
+
+    def rest_below(self, name: str) -> str:
+        """Return the rest of the parameter's name below a group; empty if the group does not contain it."""
+        own_parts, group = self.name.split("."), name.split(".")
+        is_inside = len(own_parts) > len(group) and all(
+            mark in ("*", part) for mark, part in zip(own_parts, group, strict=False)
+        )
+        return ".".join(own_parts[len(group) :]) if is_inside else ""
+
+    @property
+    def written_default(self) -> str:
+        """The default as YAML has it; empty if there is none."""
+        return "" if self.default is None else yaml_text(self.default)
+
+
+@dataclass(frozen=True, slots=True)
+class Plugin:
+    """A type of plugins that a node loads.
+
+    Attributes:
+        type: the type, such as ``nav2_costmap_2d::InflationLayer``.
+        node: the node that loads it.
+        listed: the parameter of the node that names its plugins.
+        parameters: the parameters, without the name of the plugin.
+    """
+
+    type: str
+    node: str
+    listed: str
+    parameters: tuple[ParameterInfo, ...]
+
+
+def yaml_text(value: Any) -> str:
+    """Return a value of a parameter as YAML has it."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, float):
+        text = repr(value)
+        return {"nan": ".nan", "inf": ".inf", "-inf": "-.inf"}.get(text, text)
+    if isinstance(value, (list, tuple)):
+        return f"[{', '.join(map(yaml_text, value))}]"
+    text = str(value)
+    return text if text and text.strip("[]{}") == text else f'"{text}"'
+
+
+@cache
+def _table() -> Mapping[str, Any]:
+    text = resources.files("linkwright.language").joinpath(_FILE).read_text(encoding="utf-8")
+    table: Mapping[str, Any] = json.loads(text)
+    return table
+
+
+def _infos(table: Mapping[str, Mapping[str, Any]], owner: str) -> tuple[ParameterInfo, ...]:
+    return tuple(
+        ParameterInfo(
+            name,
+            entry.get("type", ""),
+            entry.get("default"),
+            entry.get("description", ""),
+            tuple(entry.get("choices", ())),
+            tuple(entry.get("keys", ())),
+            owner,
+        )
+        for name, entry in table.items()
+    )
+
+
+@cache
+def node_names() -> tuple[str, ...]:
+    """Return the names of the nodes with known parameters."""
+    return tuple(_table()["nodes"])
+
+
+@cache
+def node_parameters(node: str) -> tuple[ParameterInfo, ...]:
+    """Return the parameters of a node by its name; none if the node is not known."""
+    return _infos(_table()["nodes"].get(node, {}), node)
+
+
+@cache
+def plugins() -> Mapping[str, Plugin]:
+    """Return the plugins by type, in which ``/`` replaces ``::``."""
+    return {
+        kind.replace("::", "/"): Plugin(kind, entry["node"], entry["listed"], _infos(entry["parameters"], kind))
+        for kind, entry in _table()["plugins"].items()
+    }
+
+
+def plugin_types(node: str, listed: str = "") -> list[str]:
+    """Return the types of plugins that a node loads.
+
+    Args:
+        node: the name of the node; a costmap has the same layers under any name.
+        listed: the parameter that names the plugins; empty for all.
+    """
+    owner = "local_costmap" if node.endswith("costmap") else node
+    return [plugin.type for plugin in plugins().values() if plugin.node == owner and listed in ("", plugin.listed)]
+
+
+def controller_types() -> list[str]:
+    """Return the type names of controllers."""
+    return [*extensions(_CONTROLLERS)]
+
+
+def controller_parameters(kind: str, names: Collection[str] = ()) -> tuple[ParameterInfo, ...]:
+    """Return the parameters of a controller type; none if the type is not known or cannot be imported.
+
+    Args:
+        kind: the type name.
+        names: the names of the parameters that are set, which tell two controllers with the same type name apart.
+    """
+    controller = _controller(kind)
+    if controller is None:
+        return ()
+    return _controller_table(controller.variant(names), kind)
+
+
+@cache
+def _controller_table(controller: Any, kind: str) -> tuple[ParameterInfo, ...]:
+    from linkwright.nodes.parameter_tables import entries  # imported here because it loads the graph
+
+    return tuple(
+        ParameterInfo(
+            entry.name,
+            entry.kind.name.lower(),
+            entry.default,
+            entry.description,
+            entry.choices,
+            entry.keys,
+            kind,
+        )
+        for entry in entries(controller.PARAMETERS)
+    )
+
+
+def controller_purpose(kind: str) -> str | None:
+    """Return the first paragraph about a controller type; None if the type is not known."""
+    controller = _controller(kind)
+    return None if controller is None else cleandoc(controller.__doc__ or "").partition("\n\n")[0]
+
+
+def _controller(kind: str) -> Any:
+    if kind not in extensions(_CONTROLLERS):
+        return None
+    from linkwright.control.controllers.registry import controller_class
+
+    try:
+        return controller_class(kind)
+    except LinkwrightError:
+        return None
+
+
+def owners_of(keys: Iterable[str]) -> list[str]:
+    """Return the nodes that have the most of some parameters, the best first; none if no node has any."""
+    names = set(keys)
+    counts = {node: sum(parameter.name in names for parameter in node_parameters(node)) for node in node_names()}
+    return sorted((node for node, count in counts.items() if count), key=lambda node: -counts[node])

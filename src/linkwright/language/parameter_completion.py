@@ -1,0 +1,237 @@
+"""Completions in ROS 2 parameter files, also those of ros2_control: nodes, controllers and their parameters."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.diagnostics.translation import localized
+from linkwright.language.completion import Completion, ItemKind
+from linkwright.language.definitions import NameKind
+from linkwright.language.format import Document
+from linkwright.language.parameter_catalogue import (
+    ParameterInfo,
+    controller_purpose,
+    controller_types,
+    node_names,
+    node_parameters,
+    plugin_types,
+    plugins,
+)
+from linkwright.language.parameter_sections import (
+    PARAMETERS,
+    Section,
+    declared_controllers,
+    node_of,
+    section_at,
+    sections,
+)
+from linkwright.language.parameter_values import kinds_of_parameter, parameter_values, sources_of
+from linkwright.language.robot_names import robot_names
+from linkwright.language.yaml_outline import Place, YamlCursor, YamlEntry, YamlOutline
+from linkwright.language.yaml_symbols import by_typed, has_colon, snippet_text
+
+_USUAL_CONTROLLERS = (
+    "joint_state_broadcaster/JointStateBroadcaster",
+    "joint_trajectory_controller/JointTrajectoryController",
+    "diff_drive_controller/DiffDriveController",
+)
+_NUMBERED = re.compile(r"[a-z]+\d+(_|$)")
+"""A parameter of one of several sensors, such as ``odom0_config``."""
+_MAX_FILES = 40
+_COSTMAPS = ("local_costmap", "global_costmap")
+
+
+def complete_parameters(document: Document, offset: int) -> list[Completion]:
+    """Return the completions at an offset of a parameter file, the likeliest first."""
+    outline = YamlOutline(document.text)
+    cursor = outline.cursor(offset)
+    if cursor.place is Place.NOTHING:
+        return []
+    section = section_at(outline, cursor.within)
+    items: Iterable[Completion]
+    if cursor.place is Place.KEY:
+        colon = "" if has_colon(document.text, offset) else ":"
+        items = _node_keys(outline, cursor, colon) if section is None else _keys(document, section, cursor, colon)
+    else:
+        items = () if section is None else parameter_values(document, section, cursor)
+    return by_typed(items, cursor.typed)
+
+
+def _node_keys(outline: YamlOutline, cursor: YamlCursor, colon: str) -> Iterator[Completion]:
+    """Yield the keys outside of ``ros__parameters``: nodes and that key itself."""
+    others = [child for child in cursor.within.children if child is not cursor.entry]
+    present = {child.key for child in others}
+    is_top = cursor.within.parent is None
+    if is_top and others and not any(sections(outline)):
+        return  # another kind of file
+    body, above = f"{PARAMETERS}:\n    $0", cursor.within.key
+    if not is_top:
+        if above in _COSTMAPS and len(cursor.within.path) == 1 and not present:
+            yield _key(cursor, above, "node", "", colon and f"{above}:\n  {body}")
+        if PARAMETERS not in present:
+            text = phrase("the parameters of the node")
+            yield _key(cursor, PARAMETERS, "", text, colon and f"{PARAMETERS}:\n  $0")
+        if "ros__parameters" in present:
+            return
+    if is_top and "/**" not in present:
+        text = phrase("parameters of all nodes")
+        yield _key(cursor, "/**", "", text, colon and f"/**:\n  {body}")
+    for name, kind in declared_controllers(outline).items():
+        if name not in present:
+            yield _key(cursor, name, kind, controller_purpose(kind) or "", colon and f"{name}:\n  {body}")
+    for name in node_names():
+        if name not in present:
+            yield _key(cursor, name, "node", _names_of(node_parameters(name)), colon and f"{name}:\n  {body}")
+
+
+def _key(cursor: YamlCursor, label: str, detail: str, description: str | Phrase, snippet: str) -> Completion:
+    return Completion(label, ItemKind.ATTRIBUTE, cursor.start, detail, description, snippet)
+
+
+def _names_of(parameters: Iterable[ParameterInfo]) -> str:
+    return ", ".join(f"`{parameter.name}`" for parameter in parameters)
+
+
+def _keys(document: Document, section: Section, cursor: YamlCursor, colon: str) -> Iterator[Completion]:
+    """Yield the parameters and groups at a place in ``ros__parameters``."""
+    present = {child.key for child in cursor.within.children if child is not cursor.entry}
+    if section.is_manager:
+        yield from _manager_keys(section, cursor, colon)
+    place = section.prefix.split(".") if section.prefix else []
+    yield from _plugin_keys(section, cursor, colon, present)
+    yield from _keys_in_sources(document, section, cursor, colon, present)
+    groups: dict[str, list[str]] = {}
+    dotted: list[Completion] = []
+    for parameter in sorted(section.parameters(), key=lambda parameter: bool(_NUMBERED.match(parameter.name))):
+        parts = parameter.name.split(".")
+        if len(parts) <= len(place) or any(a not in ("*", b) for a, b in zip(parts, place, strict=False)):
+            continue
+        rest = parts[len(place) :]
+        firsts = _names_for(document, section, parameter) if rest[0] == "*" else [rest[0]]
+        for first in firsts:
+            if len(rest) == 1 and first not in present:
+                yield _parameter_key(cursor, first, parameter, colon)
+            elif len(rest) > 1:
+                groups.setdefault(first, []).append(".".join(rest[1:]))
+                name = ".".join([first, *rest[1:]])
+                if "*" not in name and name not in present:
+                    dotted.append(_parameter_key(cursor, name, parameter, colon))
+    yield from _keys_elsewhere(document, section, cursor, colon, present)
+    uses_dots = any("." in name for name in present)
+    yield from dotted if uses_dots else ()
+    for name, inside in groups.items():
+        if name not in present:
+            shown = ", ".join(f"`{part}`" for part in dict.fromkeys(inside))
+            yield Completion(name, ItemKind.NAME, cursor.start, "", shown, colon and f"{snippet_text(name)}:\n  $0")
+    yield from dotted
+
+
+def _keys_in_sources(
+    document: Document, section: Section, cursor: YamlCursor, colon: str, present: set[str]
+) -> Iterator[Completion]:
+    """Yield the parameters that the sources of a node of the workspace declare."""
+    for parameter in sources_of(document, section):
+        place = f"{section.prefix}." if section.prefix else ""
+        if parameter.name.startswith(place):
+            first, _, rest = parameter.name.removeprefix(place).partition(".")
+            if first not in present:
+                detail = f"{parameter.type} = {parameter.default}" if parameter.default else parameter.type
+                end = ":\n  $0" if rest else ": $0"
+                snippet = colon and snippet_text(first) + end
+                yield _key(cursor, first, "" if rest else detail, f"`{parameter.file.name}`", snippet)
+
+
+def _keys_elsewhere(
+    document: Document, section: Section, cursor: YamlCursor, colon: str, present: set[str]
+) -> Iterator[Completion]:
+    """Yield the keys that other parameter files of the package have at this place, for a node that is not known."""
+    if not section.may_be_controller or section.node in section.controllers:
+        return
+    for file in [*document.project.configuration_files(document.file)][:_MAX_FILES]:
+        text = document.other(file) if file != document.file and file.name.endswith((".yaml", ".yml")) else ""
+        for entry in sections(YamlOutline(text)) if f"{section.node}:" in text else ():
+            below: YamlEntry | None = entry if node_of(entry) == section.node else None
+            for key in section.prefix.split(".") if section.prefix else ():
+                below = None if below is None else below.child(key)
+            for child in () if below is None else below.children:
+                if child.key and child.key not in present:
+                    detail = f"{file.name}: {child.value[:40]}" if child.value else file.name
+                    end = ":\n  $0" if child.children else ": $0"
+                    yield _key(cursor, child.key, detail, "", colon and snippet_text(child.key) + end)
+
+
+def _plugin_keys(section: Section, cursor: YamlCursor, colon: str, present: set[str]) -> Iterator[Completion]:
+    """Yield the plugins that a list names and that have no parameters yet, or the key ``plugin`` of such a plugin."""
+    entries = section.entries()
+    for listed in dict.fromkeys(plugin.listed for plugin in plugins().values()):
+        entry = entries.get(listed)
+        names = [] if entry is None else [text for text, _ in entry.items()] or [entry.scalar]
+        if section.prefix in names and "plugin" not in present:
+            text = phrase("the type of the plugin")
+            yield _key(cursor, "plugin", "string", text, colon and "plugin: $0")
+        if not section.prefix and (not section.node or plugin_types(section.node, listed)):
+            for name in names:
+                if name and name not in present:
+                    yield _key(cursor, name, listed, "", colon and f"{snippet_text(name)}:\n  plugin: $0")
+
+
+def _parameter_key(cursor: YamlCursor, label: str, parameter: ParameterInfo, colon: str) -> Completion:
+    default = parameter.written_default
+    detail = f"{parameter.type} = {default}" if default else parameter.type
+    value = f"${{1:{snippet_text(default)}}}" if default and len(default) <= 40 else "$0"
+    snippet = colon and f"{snippet_text(label)}: {value}"
+    return Completion(label, ItemKind.ATTRIBUTE, cursor.start, detail, described(parameter, label), snippet)
+
+
+def described(parameter: ParameterInfo, name: str = "") -> str:
+    """Return the description of a parameter in Markdown.
+
+    Args:
+        parameter: the parameter.
+        name: the name to show instead of that with ``*``.
+    """
+    default = parameter.written_default
+    head = f"**{name or parameter.name}**" + (f" `{parameter.type}`" if parameter.type else "")
+    lines = [head + (f" = `{default}`" if default else "")]
+    if parameter.description:
+        lines.append(parameter.description[:1].upper() + parameter.description[1:].rstrip("."))
+    if parameter.choices:
+        choices = ", ".join(f"`{choice}`" for choice in parameter.choices)
+        lines.append(localized(phrase("one of {choices}", choices=choices)))
+    if parameter.owner:
+        lines.append(f"*{parameter.owner}*")
+    return "\n\n".join(lines)
+
+
+def _names_for(document: Document, section: Section, parameter: ParameterInfo) -> list[str]:
+    """Return the names for ``*``: those in the parameters that list them, or all joints."""
+    entries = section.entries()
+    names = [
+        name
+        for key in parameter.keys
+        if key in entries
+        for name in ([text for text, _ in entries[key].items()] or entries[key].scalar.split())
+        if name
+    ]
+    if names or not parameter.keys or not any(kinds_of_parameter(key) for key in parameter.keys):
+        return names
+    parts = robot_names(document.project, document.texts, document.file)
+    return [name.name for name in parts if name.kind is NameKind.JOINT and name.detail != "fixed"]
+
+
+def _manager_keys(section: Section, cursor: YamlCursor, colon: str) -> Iterator[Completion]:
+    if section.prefix:
+        if "." not in section.prefix and cursor.within.child("type") in (None, cursor.entry):
+            text = phrase("the type of the controller")
+            yield _key(cursor, "type", "string", text, colon and "type: $0")
+        return
+    present = {child.key for child in cursor.within.children}
+    for kind in dict.fromkeys((*_USUAL_CONTROLLERS, *controller_types())):
+        package, _, name = kind.partition("/")
+        if package.endswith("controllers"):
+            package = re.sub(r"(?<!^)(?=[A-Z])", "_", name).lower()
+        if package not in present:
+            snippet = colon and f"{package}:\n  type: {kind}"
+            yield _key(cursor, package, kind, controller_purpose(kind) or "", snippet)

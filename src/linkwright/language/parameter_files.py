@@ -1,0 +1,222 @@
+"""ROS 2 parameter files and other YAML files: explanations, definitions, and the format as a whole."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from linkwright.diagnostics import phrase
+from linkwright.diagnostics.translation import localized
+from linkwright.language.definitions import NameDefinition, NameKind
+from linkwright.language.facts import part_facts, robots_of
+from linkwright.language.format import Document, Format, Target
+from linkwright.language.hover import Explanation
+from linkwright.language.parameter_catalogue import controller_purpose, node_parameters, plugins
+from linkwright.language.parameter_completion import complete_parameters, described
+from linkwright.language.parameter_sections import (
+    PARAMETERS,
+    Section,
+    controller_declarations,
+    declared_controllers,
+    node_of,
+    section_at,
+)
+from linkwright.language.parameter_values import kinds_of_parameter, sources_of
+from linkwright.language.robot_names import robot_names, written_length
+from linkwright.language.yaml_outline import Place, YamlCursor, YamlEntry, YamlOutline
+from linkwright.language.yaml_symbols import yaml_symbols
+
+_ENDINGS = (".yaml", ".yml")
+_LAUNCH = (".launch.yaml", ".launch.yml", "_launch.yaml", "_launch.yml")
+
+
+def is_parameter_file(file: Path) -> bool:
+    """Return whether a file may have parameters, by its name: YAML that is not a launch file."""
+    return file.name.endswith(_ENDINGS) and not file.name.endswith(_LAUNCH)
+
+
+# --- explanations -----------------------------------------------------------------------------------------------------
+
+
+def explain_parameter(document: Document, offset: int) -> Explanation | None:
+    """Explain the key or value at an offset of a parameter file; None if there is nothing to say."""
+    outline = YamlOutline(document.text)
+    cursor = outline.cursor(offset)
+    start, end, word = word_at(document.text, cursor)
+    if not word:
+        return None
+    if cursor.place is Place.KEY and cursor.entry is not None:
+        text = _explained_key(document, outline, cursor.entry)
+    else:
+        text = _explained_value(document, outline, cursor, word)
+    return None if not text else Explanation(text, start, end)
+
+
+def word_at(text: str, cursor: YamlCursor) -> tuple[int, int, str]:
+    """Return the range of the key or value at a place, and its text without quotes."""
+    if cursor.place is Place.NOTHING:
+        return cursor.offset, cursor.offset, ""
+    if cursor.place is Place.KEY:
+        entry = cursor.entry
+        if entry is None:
+            return cursor.offset, cursor.offset, ""
+        start = entry.start + (1 if text[entry.start : entry.start + 1] in ("'", '"') else 0)
+        return start, start + len(entry.key), entry.key
+    start = end = cursor.start
+    stops = "\n,]}#" if cursor.in_list else "\n#"
+    quote = text[start - 1 : start] if start and text[start - 1] in "\"'" else ""
+    while end < len(text) and text[end] not in (quote or stops) and text[end] != "\n":
+        end += 1
+    word = text[start:end].rstrip()
+    return start, start + len(word), word
+
+
+def _explained_key(document: Document, outline: YamlOutline, entry: YamlEntry) -> str:
+    if entry.key == PARAMETERS:
+        return localized(phrase("the parameters of the node")) + (f" **{node}**" if (node := node_of(entry)) else "")
+    section = section_at(outline, entry.parent) if entry.parent is not None else None
+    if section is None:
+        return _explained_node(outline, entry)
+    kind = entry.child("type")
+    if section.is_manager and not section.prefix and kind is not None:
+        return f"**{entry.key}** `{kind.scalar}`\n\n{controller_purpose(kind.scalar) or ''}".strip()
+    if entry.key == "type" and (section.is_manager or section.may_be_controller):
+        purpose = controller_purpose(entry.scalar)
+        text = localized(phrase("the type of the controller"))
+        return f"**type** `string`\n\n{text}" + (f"\n\n`{entry.scalar}`: {purpose}" if purpose else "")
+    name = section.name(entry.key)
+    parameter = section.find(name)
+    if parameter is not None:
+        return described(parameter, name)
+    if entry.key == "plugin":
+        return _explained_plugin(entry.scalar)
+    plugin = entry.child("plugin")
+    if plugin is not None:
+        return f"**{entry.key}** " + _explained_plugin(plugin.scalar)
+    declaration = next((declared for declared in sources_of(document, section) if declared.name == name), None)
+    if declaration is not None:
+        default = f" = `{declaration.default}`" if declaration.default else ""
+        return f"**{name}** `{declaration.type}`{default}\n\n`{declaration.file.name}`".replace(" ``", "")
+    declared_names = [declaration.name for declaration in sources_of(document, section)]
+    inside = {
+        parameter.removeprefix(f"{name}."): None for parameter in declared_names if parameter.startswith(f"{name}.")
+    }
+    inside |= {shown: None for parameter in section.parameters() if (shown := parameter.rest_below(name))}
+    facts = part_explanation(document, entry.key, (NameKind.JOINT, NameKind.LINK))
+    if facts:
+        return facts
+    return f"**{name}**: " + ", ".join(f"`{shown}`" for shown in inside) if inside else ""
+
+
+def _explained_node(outline: YamlOutline, entry: YamlEntry) -> str:
+    if "*" in entry.key:
+        return f"**{entry.key}**\n\n" + localized(phrase("the parameters of all nodes whose names match this pattern"))
+    node = [part for part in entry.key.split("/") if part][-1:]
+    name = node[0] if node else ""
+    kind = declared_controllers(outline).get(name)
+    if kind is not None:
+        return f"**{name}** `{kind}`\n\n{controller_purpose(kind) or ''}".strip()
+    parameters = node_parameters(name)
+    if not parameters:
+        return ""
+    shown = ", ".join(f"`{parameter.name}`" for parameter in parameters[:30])
+    return f"**{name}**: {shown}" + (", ..." if len(parameters) > 30 else "")
+
+
+def _explained_plugin(kind: str) -> str:
+    plugin = plugins().get(kind.replace("::", "/"))
+    if plugin is None:
+        return f"`{kind}`" if kind else ""
+    shown = ", ".join(f"`{parameter.name}`" for parameter in plugin.parameters)
+    text = localized(phrase("plugin of {node}", node=plugin.node))
+    return f"`{kind}`, {text}" + (f": {shown}" if shown else "")
+
+
+def _explained_value(document: Document, outline: YamlOutline, cursor: YamlCursor, word: str) -> str:
+    section = section_at(outline, cursor.within)
+    if section is None:
+        return ""
+    last = section.prefix.rpartition(".")[2]
+    purpose = controller_purpose(word)
+    if purpose is not None:
+        return f"`{word}`: {purpose}"
+    if word.replace("::", "/") in plugins():
+        return _explained_plugin(word)
+    facts = part_explanation(document, word, kinds_of_parameter(last))
+    if facts:
+        return facts
+    parameter = section.find(section.prefix)
+    return "" if parameter is None else described(parameter, section.prefix)
+
+
+def part_explanation(document: Document, name: str, kinds: tuple[NameKind, ...]) -> str:
+    """Return the facts about a link or joint in the robots that a file is likely to be about."""
+    for part in robot_names(document.project, document.texts, document.file):
+        if part.name == name and part.kind in kinds:
+            robots = robots_of(document.project, document.texts, part.file)
+            facts = next((facts for robot in robots if (facts := part_facts(robot, part.kind, name))), "")
+            return f"**{part.kind.value} {name}**, {part.file.name}\n\n{facts}"
+    return ""
+
+
+# --- definitions ------------------------------------------------------------------------------------------------------
+
+
+def define_in_parameters(document: Document, offset: int) -> Iterator[Target]:
+    """Yield the places that define what is at an offset: of a controller, a plugin, a joint, a link or a frame."""
+    outline = YamlOutline(document.text)
+    cursor = outline.cursor(offset)
+    _, _, word = word_at(document.text, cursor)
+    if not word:
+        return
+    section = section_at(outline, cursor.within)
+    kinds: tuple[NameKind, ...] = ()
+    if section is not None:
+        key = section.prefix.rpartition(".")[2]
+        kinds = kinds_of_parameter(key) if cursor.place is Place.VALUE else (NameKind.JOINT, NameKind.LINK)
+    declaration = _declaration(outline, section, cursor, word)
+    if declaration is not None:
+        yield Target(document.file, declaration.start, declaration.start + len(declaration.key))
+        return
+    if section is not None and cursor.place is Place.KEY:
+        name_in_section = section.name(word)
+        for source in sources_of(document, section):
+            if source.name == name_in_section:
+                yield Target(source.file, source.start, source.start + len(source.name))
+                return
+    for name in robot_names(document.project, document.texts, document.file):
+        if name.name == word and (name.kind in kinds or (not kinds and cursor.in_list)):
+            yield target_of(document, name)
+            return
+
+
+def _declaration(outline: YamlOutline, section: Section | None, cursor: YamlCursor, word: str) -> YamlEntry | None:
+    """Return the entry that declares a controller or a plugin: from its parameters, or from a list of names."""
+    if cursor.place is Place.VALUE and section is not None:
+        entry = section.entry.child(word)
+        if entry is not None and entry.children:
+            return entry
+    if cursor.place is Place.KEY and section is not None and not section.is_manager:
+        return None
+    kind = controller_declarations(outline).get(word.rpartition("/")[2])
+    entry = kind if kind is None or kind.key != "type" else kind.parent
+    if entry is not None and entry.key == PARAMETERS:
+        entry = entry.parent
+    if entry is None or entry is cursor.entry:
+        name = word if entry is not None else ""
+        return next((other for other in outline.root.all() if other.key == name and other is not entry), None)
+    return entry
+
+
+def target_of(document: Document, name: NameDefinition) -> Target:
+    """Return the place of a link's or joint's name."""
+    return Target(name.file, name.start, name.start + written_length(document.other(name.file), name))
+
+
+PARAMETER_FILES = Format(
+    covers=is_parameter_file,
+    complete=complete_parameters,
+    explain=explain_parameter,
+    define=define_in_parameters,
+    symbols=yaml_symbols,
+)

@@ -1,0 +1,160 @@
+"""The sections of ROS 2 parameter files: which node each belongs to, and which parameters it may have."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache
+
+from linkwright.language.parameter_catalogue import (
+    MANAGER,
+    ParameterInfo,
+    controller_parameters,
+    node_names,
+    node_parameters,
+    owners_of,
+    plugins,
+)
+from linkwright.language.yaml_outline import YamlEntry, YamlOutline
+
+PARAMETERS = "ros__parameters"
+_EVERY_NODE = ParameterInfo(
+    "use_sim_time", "bool", False, "whether the node takes the time from the topic `/clock` of a simulator"
+)
+_TYPE = ParameterInfo("type", "string", None, "the type of the controller, if the node is one")
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """The content of a key ``ros__parameters``, or a place in it.
+
+    Attributes:
+        entry: the entry of ``ros__parameters``.
+        node: the name of the node; empty for a pattern such as ``/**``.
+        prefix: the names between the key and the place, with dots.
+        controllers: the types of the controllers that the file declares, by name.
+    """
+
+    entry: YamlEntry
+    node: str
+    prefix: str
+    controllers: Mapping[str, str]
+
+    @property
+    def is_manager(self) -> bool:
+        """Whether the node is a controller manager."""
+        return self.node == MANAGER or _declares_controllers(self.entry)
+
+    @property
+    def may_be_controller(self) -> bool:
+        """Whether the node is a controller, or a node that is not known."""
+        return bool(self.node) and not self.is_manager and not node_parameters(self.node)
+
+    def name(self, key: str) -> str:
+        """Return the name of a parameter with a key at the place."""
+        return f"{self.prefix}.{key}" if self.prefix else key
+
+    def entries(self) -> dict[str, YamlEntry]:
+        """Return the parameters that the section has, by name with dots."""
+        return {".".join(_below(self.entry, entry)): entry for entry in self.entry.all() if entry.key}
+
+    def parameters(self) -> list[ParameterInfo]:
+        """Return the parameters that the node of the section may have, with those of its plugins."""
+        entries = self.entries()
+        if self.node in self.controllers:
+            parameters = list(controller_parameters(self.controllers[self.node], entries.keys()))
+        else:
+            owners = [self.node] if node_parameters(self.node) else owners_of(entries)[:1]
+            parameters = [parameter for owner in owners for parameter in node_parameters(owner)]
+            if not self.node:
+                parameters += [_EVERY_NODE, *_common_parameters()]
+        if self.may_be_controller:
+            parameters.append(_TYPE)
+        return [*parameters, *self._of_plugins(entries), _EVERY_NODE]
+
+    def find(self, name: str) -> ParameterInfo | None:
+        """Return the parameter with a name with dots, or None if it is not known."""
+        return next((parameter for parameter in self.parameters() if parameter.matches(name)), None)
+
+    def _of_plugins(self, entries: Mapping[str, YamlEntry]) -> Iterator[ParameterInfo]:
+        for name, entry in entries.items():
+            prefix, _, last = name.rpartition(".")
+            plugin = (
+                plugins().get(entry.scalar.replace("::", "/")) if last in ("plugin", "primary_controller") else None
+            )
+            if plugin is not None and prefix:
+                yield from (parameter.below(prefix, plugin.type) for parameter in plugin.parameters)
+
+
+def section_at(outline: YamlOutline, entry: YamlEntry) -> Section | None:
+    """Return the section that an entry of a file is in, or None if it is not in a section.
+
+    Args:
+        outline: the file.
+        entry: an entry; for ``ros__parameters`` itself the section begins there.
+    """
+    keys: list[str] = []
+    current: YamlEntry | None = entry
+    while current is not None and current.key != PARAMETERS:
+        keys = [current.key, *keys] if current.key else keys
+        current = current.parent
+    if current is None or current.parent is None:
+        return None
+    return Section(current, node_of(current), ".".join(keys), declared_controllers(outline))
+
+
+def node_of(entry: YamlEntry) -> str:
+    """Return the name of the node that an entry of ``ros__parameters`` is for; empty for a pattern."""
+    parts = [part for key in entry.path[:-1] for part in key.split("/") if part]
+    return parts[-1] if parts and "*" not in parts[-1] else ""
+
+
+def sections(outline: YamlOutline) -> Iterator[YamlEntry]:
+    """Yield the entries of ``ros__parameters`` of a file."""
+    return (entry for entry in outline.root.all() if entry.key == PARAMETERS)
+
+
+def declared_controllers(outline: YamlOutline) -> dict[str, str]:
+    """Return the types of the controllers that a file declares, by name: ``NAME: type: PACKAGE/CLASS``."""
+    return {name: entry.scalar for name, entry in controller_declarations(outline).items()}
+
+
+def controller_declarations(outline: YamlOutline) -> dict[str, YamlEntry]:
+    """Return the entries with the types of controllers, by the controller's name.
+
+    A controller is declared by its manager, or by a parameter ``type`` of its own.
+    """
+    declarations: dict[str, YamlEntry] = {}
+    for section in sections(outline):
+        kind_of_node, node = section.child("type"), node_of(section)
+        if kind_of_node is not None and node and "/" in kind_of_node.scalar:
+            declarations[node] = kind_of_node
+        for child in section.children:
+            name, dot, last = child.key.rpartition(".")
+            kind = child if dot and last == "type" else child.child("type")
+            if kind is not None and "/" in kind.scalar:
+                declarations[name if kind is child else child.key] = kind
+    return declarations
+
+
+def _declares_controllers(entry: YamlEntry) -> bool:
+    kinds = (child.child("type") for child in entry.children)
+    return any(kind is not None and "/" in kind.scalar for kind in kinds)
+
+
+@cache
+def _common_parameters() -> tuple[ParameterInfo, ...]:
+    """Return the parameters of all nodes, those first that most nodes have."""
+    parameters = [parameter for node in node_names() for parameter in node_parameters(node)]
+    counts = Counter(parameter.name for parameter in parameters)
+    return tuple(sorted(parameters, key=lambda parameter: -counts[parameter.name]))
+
+
+def _below(section: YamlEntry, entry: YamlEntry) -> list[str]:
+    keys: list[str] = []
+    current: YamlEntry | None = entry
+    while current is not None and current is not section:
+        keys = [current.key, *keys] if current.key else keys
+        current = current.parent
+    return keys

@@ -1,0 +1,151 @@
+"""Values in ROS 2 parameter files: types of controllers and plugins, booleans, choices, joints, links and frames."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+
+from linkwright.diagnostics import phrase
+from linkwright.diagnostics.translation import localized
+from linkwright.language.completion import Completion, ItemKind
+from linkwright.language.declared_parameters import DeclaredParameter, declared_parameters
+from linkwright.language.definitions import NameKind
+from linkwright.language.format import Document
+from linkwright.language.mentions import kinds_of_key
+from linkwright.language.parameter_catalogue import (
+    ParameterInfo,
+    controller_purpose,
+    controller_types,
+    plugin_types,
+    plugins,
+)
+from linkwright.language.parameter_sections import Section
+from linkwright.language.robot_names import robot_names
+from linkwright.language.yaml_outline import YamlCursor
+from linkwright.language.yaml_symbols import snippet_text
+
+INTERFACES = ("position", "velocity", "effort", "acceleration")
+_USUAL_FRAMES = ("map", "odom", "base_link", "base_footprint")
+"""Frames of mobile platforms (REP 105)."""
+_INTERFACE = re.compile(r"(^|_)(command_|state_)?interfaces?(_names?)?$")
+_CAPITALS = re.compile(r":[ \t]+(?:True|False)\b")
+_SMALL = re.compile(r":[ \t]+(?:true|false)\b")
+_COLONS = re.compile(r"plugin:[ \t]+[\"']?nav2_(?!costmap_2d)\w+::|plugin:[ \t]+[\"']?dwb_core::")
+_SENSOR_TOPICS = ("/scan", "/points")
+
+
+def sources_of(document: Document, section: Section) -> list[DeclaredParameter]:
+    """Return the parameters that sources of the workspace declare, if the node of a section is not known."""
+    if not section.may_be_controller or section.node in section.controllers:
+        return []
+    return declared_parameters(document.project, document.texts, section.node)
+
+
+def kinds_of_parameter(key: str) -> tuple[NameKind, ...]:
+    """Return the kinds of names that the values of a parameter are; empty if its name does not tell."""
+    last = key.rpartition(".")[2]
+    return (NameKind.JOINT,) if last == "dof_names" else kinds_of_key(last)
+
+
+def parameter_values(document: Document, section: Section, cursor: YamlCursor) -> Iterator[Completion]:
+    """Yield the values that a parameter may have, the likeliest first."""
+    name = section.prefix
+    last = name.rpartition(".")[2]
+    parameter = section.find(name)
+    is_array = parameter is not None and parameter.type.endswith("_array") and not cursor.in_list
+
+    def item(label: str, kind: ItemKind = ItemKind.VALUE, detail: str = "", description: str = "") -> Completion:
+        snippet = f"[{snippet_text(label)}$0]" if is_array and not label.startswith("[") else ""
+        return Completion(label, kind, cursor.start, detail, description, snippet)
+
+    present = {text for text, start in cursor.within.items() if start != cursor.start}
+    if last == "type" and (section.is_manager or (section.may_be_controller and name == "type")):
+        for kind in _resembling(controller_types(), name.rpartition(".")[0] or section.node):
+            yield item(kind, description=controller_purpose(kind) or "")
+    elif last in ("plugin", "primary_controller"):
+        uses_colons = _COLONS.search(document.text) is not None
+        for kind in _plugin_types(section, name.rpartition(".")[0], last):
+            yield item(kind.replace("/", "::") if uses_colons else kind)
+    elif _is_boolean(document, section, name):
+        counts = [len(pattern.findall(document.text)) for pattern in (_SMALL, _CAPITALS)]
+        is_capital = cursor.typed[:1].isupper() if cursor.typed else counts[1] > counts[0]
+        for word in ("true", "false"):
+            mark = "" if parameter is None else _default_mark(parameter, word)
+            yield item(word.title() if is_capital else word, detail=mark)
+    elif parameter is not None and parameter.choices:
+        for word in parameter.choices:
+            yield item(word, detail=_default_mark(parameter, word))
+    elif _INTERFACE.search(last):
+        for word in INTERFACES:
+            if word not in present:
+                yield item(word)
+    elif any(plugin.listed == last for plugin in plugins().values()):
+        for entry in section.entry.children:
+            if entry.child("plugin") is not None and entry.key not in present:
+                yield item(entry.key, ItemKind.NAME)
+    else:
+        default = parameter.written_default if parameter is not None else ""
+        for label, detail in _robot_values(document, last, default):
+            if label not in present:
+                yield item(label, ItemKind.NAME, detail)
+    if last == "topic" and name.count("."):
+        for topic in ("cmd_vel",) if section.node == "twist_mux" else _SENSOR_TOPICS:
+            yield item(topic)
+    if parameter is not None and not cursor.in_list and parameter.written_default and not parameter.choices:
+        default = parameter.written_default
+        if parameter.type != "bool":
+            yield item(default, detail=localized(phrase("default")))
+
+
+def _is_boolean(document: Document, section: Section, name: str) -> bool:
+    parameter = section.find(name)
+    if parameter is not None:
+        return parameter.type == "bool"
+    return any(declared.name == name and declared.type == "bool" for declared in sources_of(document, section))
+
+
+def _default_mark(parameter: ParameterInfo, word: str) -> str:
+    return localized(phrase("default")) if parameter.written_default.strip('"') == word else ""
+
+
+def _robot_values(document: Document, key: str, default: str) -> Iterator[tuple[str, str]]:
+    """Yield the names of joints or frames for a parameter, each with a few words: the default frame first."""
+    kinds = kinds_of_parameter(key)
+    if not kinds:
+        return
+    if default in _USUAL_FRAMES:
+        yield default, localized(phrase("default"))
+    parts = robot_names(document.project, document.texts, document.file)
+    if NameKind.JOINT in kinds:  # joints that move first
+        parts.sort(key=lambda name: name.detail == "fixed")
+    for name in parts:
+        if name.kind in kinds:
+            yield name.name, name.detail or name.kind.value
+    if NameKind.LINK in kinds:
+        for frame in _USUAL_FRAMES:
+            yield frame, "REP 105"
+
+
+def _resembling(types: Iterable[str], name: str) -> list[str]:
+    """Return types, those first that resemble the name of a controller or plugin."""
+    words = [word for word in re.split(r"\W|_|(?<=[a-z])(?=[A-Z])", name) if word]
+
+    def rank(kind: str) -> int:
+        return -sum(len(word) for word in words if word.lower() in kind.lower())
+
+    return sorted(types, key=rank)
+
+
+def _plugin_types(section: Section, plugin: str, key: str) -> list[str]:
+    """Return the types that a plugin may have: those of the parameter that names it, if there is one."""
+    if key == "primary_controller":
+        return plugin_types(section.node, "controller_plugins")
+    entries = section.entries()
+    for listed in dict.fromkeys(each.listed for each in plugins().values()):
+        entry, parameter = entries.get(listed), section.find(listed)
+        names = [parameter.default] if parameter is not None else []
+        if entry is not None:
+            names = [[text for text, _ in entry.items()], entry.scalar]
+        if any(plugin == name or (isinstance(name, list) and plugin in name) for name in names):
+            return _resembling(plugin_types(section.node, listed), plugin)
+    return _resembling(plugin_types(section.node) or [each.type for each in plugins().values()], plugin)

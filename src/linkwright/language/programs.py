@@ -1,0 +1,106 @@
+"""The packages, executables and components that a launch file can name, found without running anything."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from linkwright.language.format import Target
+from linkwright.launch.ros.executables import builtin_packages, hosted_executables
+from linkwright.nodes import COMPONENTS
+from linkwright.packages import PackageFinder, enclosing_package, install_prefix, is_installed
+from linkwright.packages.programs.source_programs import module_file, python_root, source_programs
+from linkwright.packages.readers.entry_points import EntryPoint, text_of
+from linkwright.packages.share_layout import source_of, substituted_executables
+
+_REGISTERED = re.compile(r"(?i)\brclcpp_components_register_nodes?\s*\(([^)]*)\)")
+_CLASS = re.compile(r"\b[A-Za-z_]\w*(?:::\w+)+")
+_DEPENDENCY = re.compile(r"<(?:exec_|run_)?depend\b[^<>]*>\s*([a-z]\w*)\s*<")
+
+
+@dataclass(frozen=True, slots=True)
+class Program:
+    """An executable of a package.
+
+    Attributes:
+        name: its name.
+        origin: where it comes from, for the detail of a completion.
+        target: the place of its source or script; None if it has none.
+    """
+
+    name: str
+    origin: str
+    target: Target | None = None
+
+
+def package_names(finder: PackageFinder, file: Path) -> list[str]:
+    """Return the names of all packages: the package of a file first, then those that it depends on, found or not."""
+    own = enclosing_package(file.parent)
+    first = [] if own is None else [own[0], *_DEPENDENCY.findall(text_of(own[1] / "package.xml"))]
+    known = {*finder.packages(), *replaced_packages()}
+    return [*dict.fromkeys(first), *sorted(known - {*first})]
+
+
+def replaced_packages() -> set[str]:
+    """Return the packages that nodes or modules of Linkwright replace, with or without files."""
+    return {*builtin_packages(), *substituted_executables()}
+
+
+def programs_of(finder: PackageFinder, package: str) -> dict[str, Program]:
+    """Return the executables of a package by name; empty if there is no such package."""
+    found: dict[str, Program] = {}
+    share = finder.find(package)
+    if share is not None and share.is_dir():
+        if not is_installed(share):
+            found = {program.name: program for program in _in_sources(share, package)}
+        for path in sorted((install_prefix(share) / "lib" / package).glob("*")):
+            if path.is_file() and path.suffix not in (".so", ".dylib") and os.access(path, os.X_OK):
+                found[path.name] = Program(path.name, str(path), Target(path))
+    ours = {name for owner, name in hosted_executables() if owner == package}
+    for name in sorted(ours | substituted_executables().get(package, frozenset())):
+        found.setdefault(name, Program(name, "Linkwright"))
+    return found
+
+
+def _in_sources(share: Path, package: str) -> Iterator[Program]:
+    programs = source_programs(share, runs_setup=False)
+    root = python_root(share, package) or share
+    for name, entry in programs.entry_points.items():
+        yield Program(name, f"{entry.module}:{entry.function}", _of_entry(root, entry))
+    for name, path in programs.scripts.items():
+        yield Program(name, str(path.relative_to(share)), Target(Path(source_of(str(path)))))
+    build = Path(source_of(str(share / "CMakeLists.txt")))
+    text = text_of(build) if programs.compiled else ""
+    for name in sorted(programs.compiled):
+        place = re.search(rf"(?i)(?:add_executable\s*\(\s*|EXECUTABLE\s+)({re.escape(name)})\b", text)
+        yield Program(name, "CMakeLists.txt", Target(build, *(place.span(1) if place else (0, 0))))
+
+
+def _of_entry(root: Path, entry: EntryPoint) -> Target | None:
+    file = module_file(root, entry.module)
+    if file is None:
+        return None
+    file = Path(source_of(str(file)))
+    place = re.search(rf"^(?:async )?def ({re.escape(entry.function)})\b", text_of(file), re.MULTILINE)
+    return Target(file, *(place.span(1) if place else (0, 0)))
+
+
+def components_of(finder: PackageFinder, package: str) -> dict[str, Target | None]:
+    """Return the classes of a package that a container can load, each with its place in the sources if known."""
+    found: dict[str, Target | None] = {}
+    share = finder.find(package)
+    if share is not None:
+        build = Path(source_of(str(share / "CMakeLists.txt")))
+        for command in _REGISTERED.finditer(text_of(build)):
+            for name in _CLASS.finditer(command[1]):
+                start = command.start(1) + name.start()
+                found[name[0]] = Target(build, start, start + len(name[0]))
+        index = install_prefix(share) / "share/ament_index/resource_index/rclcpp_components" / package
+        for line in text_of(index).splitlines():
+            found.setdefault(line.partition(";")[0].strip(), None)
+    found.update((name, None) for owner, name in COMPONENTS if owner == package and name not in found)
+    found.pop("", None)
+    return found

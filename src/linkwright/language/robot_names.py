@@ -1,0 +1,126 @@
+"""The names of links and joints after the expansion of descriptions, with the places that write them."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from weakref import WeakKeyDictionary
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.language.definitions import NameDefinition, NameKind, definitions_in
+from linkwright.language.includes import real
+from linkwright.language.workspace import Workspace
+from linkwright.packages import enclosing_package
+from linkwright.xacro import expand
+from linkwright.xmltree import Overlay
+from linkwright.xmltree.positions import start_tag_end
+
+_ENDINGS = (".urdf", ".xacro")
+_MAX_ROBOTS = 24
+_MAX_SECONDS = 0.5
+_KINDS = {"link": NameKind.LINK, "joint": NameKind.JOINT}
+_State = tuple[tuple[str, object], ...]
+"""The files of an expansion, each with its open text or the time of its last change."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Robot:
+    state: _State
+    names: tuple[NameDefinition, ...]
+    texts: frozenset[str] = frozenset()
+    """The names of files in its elements, such as that of the parameters of controllers."""
+
+
+_robots: WeakKeyDictionary[Workspace, dict[Path, _Robot]] = WeakKeyDictionary()
+
+
+def robot_names(project: Workspace, texts: Mapping[Path, str], file: Path) -> list[NameDefinition]:
+    """Return the links and joints of the robots that a file is likely to be about, the likeliest robot first.
+
+    A name that contains expressions is that of the expansion, and its place is the attribute that writes it. A
+    description that cannot be expanded has the names that are written without expressions.
+
+    Args:
+        project: the workspace.
+        texts: the texts of the open files.
+        file: a file of parameters, a configuration or a description.
+    """
+    cache = _robots.setdefault(project, {})
+    robots: list[_Robot] = []
+    begin = time.monotonic()
+    for entry in _likely_robots(project, texts, file):
+        robot = cache.get(entry)
+        if robot is None or robot.state != _state((path for path, _ in robot.state), texts):
+            if time.monotonic() - begin > _MAX_SECONDS:
+                break  # the next request continues
+            robot = cache[entry] = _read(project, texts, entry)
+        robots.append(robot)
+    names: dict[tuple[NameKind, str], NameDefinition] = {}
+    for robot in sorted(robots, key=lambda robot: file.name not in robot.texts):
+        for name in robot.names:
+            names.setdefault((name.kind, name.name), name)
+    return list(names.values())
+
+
+def _likely_robots(project: Workspace, texts: Mapping[Path, str], file: Path) -> list[Path]:
+    """Return the descriptions that no other one includes, those of the file's package first, then by its name."""
+    package = enclosing_package(file.parent)
+    name, folder = ("", file.parent) if package is None else (package[1].name, real(package[1]))
+
+    def distance(entry: Path) -> tuple[bool, int]:
+        shared = max(_common_beginning(name, part) for part in entry.parts)
+        return not entry.is_relative_to(folder), -shared
+
+    entries = [entry for entry in project.index.roots(texts) if entry.name.endswith(_ENDINGS)]
+    return sorted(entries, key=distance)[:_MAX_ROBOTS]
+
+
+def _common_beginning(name: str, other: str) -> int:
+    """Return the number of characters with which both names begin."""
+    pairs = zip(name, other, strict=False)
+    return next((number for number, (a, b) in enumerate(pairs) if a != b), min(len(name), len(other)))
+
+
+def _read(project: Workspace, texts: Mapping[Path, str], entry: Path) -> _Robot:
+    overlay = Overlay({str(path): text for path, text in texts.items()})
+    try:
+        expansion = expand(entry, {}, packages=project.finder(entry), overlay=overlay)
+    except (LinkwrightError, OSError, RecursionError):
+        text = project.text(entry, texts) or ""
+        literal = (name for name in definitions_in(text, entry) if "$" not in name.name)
+        return _Robot(_state([str(entry)], texts), tuple(name for name in literal if name.kind in _KINDS.values()))
+    names: list[NameDefinition] = []
+    for element in expansion.document.root.elements():
+        kind, name = _KINDS.get(element.tag), element.attributes.get("name")
+        if kind is not None and name and element.source is not None:
+            end = start_tag_end(element.source.text, element.offset)
+            tag = element.source.text[element.offset : end]
+            written = next(definitions_in(tag, Path()), None)
+            start = element.offset + (written.start if written else 0)
+            detail = element.attributes.get("type", "")
+            names.append(NameDefinition(kind, name, real(element.source.name), start, detail))
+    contents = (element.text() for element in expansion.document.root.walk())
+    files = (content.strip().rpartition("/")[2] for content in contents)
+    mentioned = frozenset(file for file in files if file.endswith((".yaml", ".yml")))
+    return _Robot(_state(map(str, expansion.dependencies), texts), tuple(names), mentioned)
+
+
+def _state(files: Iterator[str] | list[str] | map[str], texts: Mapping[Path, str]) -> _State:
+    state: list[tuple[str, object]] = []
+    for file in files:
+        text = texts.get(Path(file)) or texts.get(real(file))
+        try:
+            state.append((file, text if text is not None else os.stat(file).st_mtime_ns))  # noqa: PTH116
+        except OSError:
+            state.append((file, None))
+    return tuple(state)
+
+
+def written_length(text: str, name: NameDefinition) -> int:
+    """Return the length of a name as its file has it, where it may contain expressions."""
+    quote = text[name.start - 1 : name.start]
+    end = text.find(quote, name.start) if quote in ("'", '"') and quote else -1
+    return end - name.start if end >= 0 else len(name.name)

@@ -1,0 +1,201 @@
+"""SRDF: groups, and the links and joints of the description that the file belongs to."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from functools import cached_property
+from itertools import islice
+from pathlib import Path
+
+from linkwright.language.completion import Completion, ItemKind, complete
+from linkwright.language.cursor import Cursor, Spot, cursor_at
+from linkwright.language.definitions import NameDefinition, NameKind
+from linkwright.language.facts import facts_at, part_facts
+from linkwright.language.format import Document, Format, Target
+from linkwright.language.grammar import rule_at
+from linkwright.language.hover import Explanation, definitions_at, explain_at
+from linkwright.language.includes import real
+from linkwright.language.links import FileReference, file_references
+from linkwright.language.outline import Outline
+from linkwright.language.srdf_schema import CHOICES, GROUP, JOINT, LINK, SRDF
+from linkwright.language.values import values_in
+from linkwright.packages import enclosing_package
+from linkwright.packages.readers.entry_points import text_of
+from linkwright.packages.share_layout import source_of
+from linkwright.schema import AttributeRule
+from linkwright.urdf import Robot
+from linkwright.xmltree.tokens import Kind, tokens
+
+_ROBOT = re.compile(r"<robot\b[^>]*?\bname\s*=\s*[\"']([^\"']+)[\"']")
+_ASSISTANT = re.compile(r"URDF:\s*\n\s+package:\s*(\S+)\s*\n\s+relative_path:\s*(\S+)")
+_EXPRESSION = re.compile(r"\$\{[^{}]*\}|\$\([^()]*\)")
+_MAX_ROBOTS = 3
+_LONGEST_HEAD = 20_000
+"""Characters at the beginning of a description in which the name of the robot is searched."""
+
+
+def is_srdf(path: Path) -> bool:
+    """Return whether a file is an SRDF, by its name."""
+    return path.name.endswith((".srdf", ".srdf.xacro"))
+
+
+class _Semantics:
+    """An SRDF, with the descriptions that it belongs to."""
+
+    def __init__(self, document: Document) -> None:
+        self.document = document
+
+    @cached_property
+    def names(self) -> list[NameDefinition]:
+        return self.document.project.names(self.document.file, self.document.texts)
+
+    @cached_property
+    def descriptions(self) -> list[Path]:
+        """The descriptions of the robot: the one of MoveIt's assistant, then those with the robot's name."""
+        project, file = self.document.project, self.document.file
+        package = enclosing_package(file.parent)
+        found = [*self._of_assistant(package[1])] if package is not None else []
+        named = _ROBOT.search(self.document.text)
+        name = named[1] if named is not None else ""
+        beside = project.neighbours(file, ())
+        for other in dict.fromkeys((*beside, *project.index.files)):
+            head = _ROBOT.search(self.document.other(other)[:_LONGEST_HEAD]) if name else None
+            if head is not None and head[1] == name and not is_srdf(other):
+                found.append(other)
+        whole = [other for other in beside if ".urdf" in other.name and not is_srdf(other)]
+        return [*islice(dict.fromkeys(found or whole), _MAX_ROBOTS)]
+
+    def _of_assistant(self, folder: Path) -> Iterator[Path]:
+        for found in _ASSISTANT.finditer(text_of(folder / ".setup_assistant")):
+            share = self.document.finder.find(found[1])
+            if share is not None and (share / found[2]).is_file():
+                yield real(source_of(str(share / found[2])))
+
+    @cached_property
+    def robots(self) -> list[Robot]:
+        found = (self.document.project.robot(file, self.document.texts) for file in self.descriptions)
+        return [robot for robot in found if robot is not None]
+
+    def parts(self, kind: NameKind) -> list[str]:
+        """Return the names of the links or joints, in the order of the descriptions."""
+        inside = [robot.links if kind is NameKind.LINK else robot.joints for robot in self.robots]
+        return [*dict.fromkeys(name for names in inside for name in names)]
+
+    def groups(self) -> dict[str, int]:
+        """Return the names of the groups, each with its offset."""
+        found: dict[str, int] = {}
+        for token in tokens(self.document.text):
+            if token.kind is Kind.START and token.name == "group":
+                for attribute in token.attributes():
+                    if attribute.name == "name" and attribute.value:
+                        found.setdefault(attribute.value, attribute.value_start)
+        return found
+
+
+def _rule_of(cursor: Cursor) -> AttributeRule | None:
+    """Return the rule of the attribute whose value is at a cursor, or None."""
+    if cursor.spot is not Spot.VALUE or cursor.attribute is None:
+        return None
+    rule = rule_at(SRDF, cursor.tags)
+    return None if rule is None else rule.attribute_rules.get(cursor.attribute.name)
+
+
+def _is_group(cursor: Cursor, rule: AttributeRule) -> bool:
+    """Return whether a value is the name of a group that is defined elsewhere, also of a group in a group."""
+    return rule.type is GROUP or (rule.name == "name" and cursor.tags[-2:] == ("group", "group"))
+
+
+def _complete(document: Document, offset: int) -> Iterator[Completion]:
+    semantics, cursor = _Semantics(document), cursor_at(document.text, offset)
+    rule = _rule_of(cursor)
+    if rule is None or "$" in cursor.typed:
+        yield from complete(document.text, offset, document.file, semantics.names, lambda: document.finder)
+        return
+    start = offset - len(cursor.typed)
+    for choice in CHOICES.get((cursor.tags[-1], rule.name), ()):
+        yield Completion(choice, ItemKind.VALUE, start)
+    if rule.type in (LINK, JOINT):
+        kind = NameKind.LINK if rule.type is LINK else NameKind.JOINT
+        given = _names_beside(document.text, offset) if rule.name == "name" else set()
+        for name in semantics.parts(kind):
+            if name not in given:
+                yield Completion(name, ItemKind.NAME, start, kind.value)
+    elif _is_group(cursor, rule):
+        for name, place in semantics.groups().items():
+            if place != start:
+                yield Completion(name, ItemKind.NAME, start)
+
+
+def _names_beside(text: str, offset: int) -> set[str | None]:
+    """Return the names of the elements with the same tag in the element around an offset."""
+    around = Outline.of(text).around(offset)
+    inside = around[-2].children if len(around) > 1 else []
+    others = (other for other in inside if other is not around[-1] and other.tag.name == around[-1].tag.name)
+    return {attribute.value for other in others for attribute in other.tag.attributes() if attribute.name == "name"}
+
+
+def _explain(document: Document, offset: int) -> Explanation | None:
+    semantics, cursor = _Semantics(document), cursor_at(document.text, offset)
+    rule = _rule_of(cursor)
+    if rule is not None and rule.type in (LINK, JOINT) and cursor.attribute is not None and cursor.attribute.value:
+        kind = NameKind.LINK if rule.type is LINK else NameKind.JOINT
+        name = cursor.attribute.value
+        facts = next((known for robot in semantics.robots if (known := part_facts(robot, kind, name))), None)
+        if facts is not None:
+            text = f"**{kind.value} {name}**\n\n{facts}"
+            return Explanation(text, cursor.attribute.value_start, cursor.attribute.value_end)
+    found = explain_at(document.text, offset, document.file, semantics.names)
+    if found is not None or not document.file.name.endswith(".xacro"):
+        return found
+    values = values_in(document.project, document.texts, document.file)
+    more = facts_at(document.project, document.texts, document.file, document.text, offset, values)
+    return Explanation("\n\n".join(more), offset, offset) if more else None
+
+
+def _define(document: Document, offset: int) -> Iterator[Target]:
+    semantics, cursor = _Semantics(document), cursor_at(document.text, offset)
+    value = cursor.attribute.value if cursor.attribute is not None else None
+    rule = _rule_of(cursor)
+    if rule is not None and value and rule.type in (LINK, JOINT):
+        kind = NameKind.LINK if rule.type is LINK else NameKind.JOINT
+        yield from _parts(semantics, kind, value)
+    elif rule is not None and value and _is_group(cursor, rule):
+        start = semantics.groups().get(value)
+        if start is not None:
+            yield Target(document.file, start, start + len(value))
+    else:
+        for name in definitions_at(document.text, offset, semantics.names):
+            yield Target(name.file, name.start, name.start + len(name.name))
+        yield from (Target(link.file) for link in _links(document) if link.start <= offset <= link.end)
+
+
+def _parts(semantics: _Semantics, kind: NameKind, value: str) -> Iterator[Target]:
+    """Yield where the descriptions define a link or joint: by its name or, in macros, by a pattern with expressions."""
+    document = semantics.document
+    for file in semantics.descriptions:
+        names = document.project.names(file, document.texts)
+        found = [name for name in names if name.kind is kind and _matches(name.name, value)]
+        if kind is NameKind.JOINT:
+            found = [name for name in found if name.detail]  # a joint with a type is a definition
+        exact = [name for name in found if name.name == value]
+        for name in dict.fromkeys(exact or found):
+            yield Target(name.file, name.start, name.start + len(name.name))
+        if found:
+            return
+
+
+def _matches(written: str, value: str) -> bool:
+    """Return whether a name with or without expressions may have a value; one that is only an expression may not."""
+    parts = _EXPRESSION.split(written)
+    if not any(parts):
+        return False
+    return re.fullmatch(".*".join(map(re.escape, parts)), value) is not None
+
+
+def _links(document: Document) -> Iterator[FileReference]:
+    return file_references(document.text, document.file, document.finder)
+
+
+SRDF_FILES = Format(is_srdf, _complete, _explain, _define, _links, needs_index=True)
+"""SRDF, with or without xacro."""

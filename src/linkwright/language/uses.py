@@ -1,0 +1,64 @@
+"""The uses of a name in formats with functions of their own: the places whose definition is that of the name."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from linkwright.language.format import Document, Format, Target
+from linkwright.language.formats import format_of
+from linkwright.language.includes import real
+from linkwright.packages import enclosing_package
+from linkwright.packages.launch_files import is_launch_file_name, launch_files_below
+from linkwright.packages.share_layout import source_of
+
+_MAX_FILES = 200
+_MAX_PLACES = 300
+"""Places in a file that may use a name; the others are left out."""
+
+
+def uses_at(document: Document, known: Format, offset: int, *, in_file: bool = False) -> list[Target]:
+    """Return the places that define or use the name at an offset, the definition first; empty if it is not known.
+
+    The uses of an argument of a launch file are also in the launch files of the package that name the file.
+
+    Args:
+        document: the text.
+        known: its format.
+        offset: the character offset.
+        in_file: whether only the places in the text are returned.
+    """
+    found: dict[Target, None] = {}
+    for target in known.define(document, offset):
+        name = document.other(target.file)[target.start : target.end] if target.end > target.start else ""
+        if not name or document.text.find(name, max(0, offset - len(name)), offset + len(name)) < 0:
+            continue
+        if not in_file or target.file == document.file:
+            found[target] = None
+        for other in [document] if in_file else [*_documents(document, target.file)]:
+            own = format_of(other.file)
+            if own is not None:
+                found.update(dict.fromkeys(_uses(other, own, target, name)))
+    return list(found)
+
+
+def _documents(document: Document, file: Path) -> Iterator[Document]:
+    """Yield a document, a file, and the launch files in their packages that name the file."""
+    others: list[Path] = []
+    if is_launch_file_name(file.name) or file.name.endswith(".launch"):
+        packages = (enclosing_package(path.parent) for path in (document.file, file))
+        folders = dict.fromkeys(found[1] for found in packages if found is not None)
+        others = [real(source_of(str(path))) for folder in folders for path in launch_files_below(folder)]
+    for number, path in enumerate(dict.fromkeys((document.file, file, *others))):
+        if number < _MAX_FILES:
+            text = document.text if path == document.file else document.other(path)
+            if path in (document.file, file) or file.name in text:
+                yield Document(document.project, document.texts, path, text)
+
+
+def _uses(document: Document, known: Format, target: Target, name: str) -> Iterator[Target]:
+    places = re.finditer(rf"(?<![\w.-]){re.escape(name)}(?![\w.-])", document.text)
+    for _, place in zip(range(_MAX_PLACES), places, strict=False):
+        if target in known.define(document, place.start()):
+            yield Target(document.file, *place.span())

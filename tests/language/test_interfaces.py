@@ -1,0 +1,54 @@
+"""Interface files: completion, hover and definition of types."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.language.formats import Place, make_packages
+
+
+@pytest.fixture
+def at(tmp_path: Path):
+    folder = make_packages(tmp_path)
+    (folder / "msg").mkdir()
+    (folder / "msg" / "Glow.msg").write_text("# How bright\nfloat64 level\n")
+    other = folder.parent / "lamp_nodes" / "msg"
+    other.mkdir()
+    (other / "Blink.msg").write_text("bool on\n")
+    return lambda text, name="msg/Lamp.msg": Place(folder / name, text)
+
+
+def test_types_are_built_in_of_the_package_or_of_other_packages(at):
+    assert at("|").labels()[0] == "float64"
+    assert at("uint8 a\nint|").labels()[:2] == ["int32", "int64"]
+    assert at("G|").labels() == ["Glow"]
+    assert at("lamp_nodes/|").labels() == ["lamp_nodes/Blink"]
+    assert at("std_|").labels()[0] == "std_msgs/Header"
+    assert "geometry_msgs/PoseStamped" in at("geometry_msgs/Pose|[] poses").labels()
+    assert at("# int|").labels() == []
+
+
+def test_the_name_of_a_field_follows_from_its_type(at):
+    assert at("std_msgs/Header |").labels() == ["header"]
+    assert at("geometry_msgs/PoseStamped[] p|").labels() == ["pose_stamped"]
+
+
+def test_a_type_is_explained_by_its_definition(at):
+    assert "# How bright\nfloat64 level" in at("Gl|ow glow").hover()
+    assert "builtin_interfaces/Time stamp" in at("std_msgs/Hea|der header").hover()
+    assert at("uin|t8 a").hover() == "`uint8`: an integer from 0 to 255"
+    assert at("---\nGlow gl|ow", "srv/Set.srv").hover().startswith("**Glow**")
+
+
+def test_a_type_leads_to_its_file(at):
+    assert at("Gl|ow glow").targets() == ["Glow.msg:"]
+    assert at("lamp_nodes/Bl|ink[<=2] b").targets() == ["Blink.msg:"]
+    assert at("geometry_msgs/Po|se p").targets() == ["geometry_msgs.txt:msg/Pose"]
+
+
+def test_symbols_are_the_fields_of_each_part(at):
+    place = at("|int32 a\n---\nint32 B=3\nstring<=5 c", "srv/Set.srv")
+    found = [(part.name, [child.name for child in part.children]) for part in place.format.symbols(place.document)]
+    assert found == [("Request", ["a"]), ("Response", ["B", "c"])]

@@ -1,0 +1,140 @@
+"""Launch files in Python: completion, hover and definition in strings, without running the file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from linkwright.language.launch_arguments import arguments_in
+from linkwright.language.python_text import PythonText
+from tests.language.formats import Place, make_packages
+
+HEAD = "share = get_package_share_directory('lamp_bringup')\n"
+INCLUDE = """IncludeLaunchDescription(
+    PythonLaunchDescriptionSource(os.path.join(share, 'launch', 'parts.launch.py')),
+    launch_arguments={}
+)"""
+
+
+@pytest.fixture
+def at(tmp_path: Path):
+    folder = make_packages(tmp_path)
+    return lambda text: Place(folder / "launch" / "lamp.launch.py", HEAD + text)
+
+
+def test_packages_and_executables(at):
+    assert at("Node(package='|')").labels()[:2] == ["lamp_bringup", "lamp_nodes"]
+    assert at('FindPackageShare("lamp_n|').labels() == ["lamp_nodes"]
+    assert at("Node(package='lamp_nodes', executable='|').").labels() == ["blink"]
+    assert at("Node(\n  executable='b|',\n  package='lamp_nodes',\n)").labels() == ["blink"]
+    assert at("name = 'lamp_nodes'\nNode(package=name, executable='|'").labels() == ["blink"]
+    assert at("ComposableNode(package='lamp_bringup', plugin='|')").labels() == ["lamp_bringup::Fader"]
+    assert at("Node(package='lamp_nodes', executable='bl|ink')").targets() == ["blink.py:main"]
+    assert "Nodes of a lamp." in at("Node(package='lamp_no|des')").hover()
+
+
+@pytest.mark.parametrize(
+    "written",
+    [
+        "os.path.join(share, 'config', '|')",
+        "os.path.join(share, 'config/|')",
+        "share + '/config/|'",
+        "Path(share) / 'config' / '|'",
+        "PathJoinSubstitution([FindPackageShare('lamp_bringup'), 'config', '|'])",
+        "[FindPackageShare('lamp_bringup'), '/config/|']",
+        "'package://lamp_bringup/config/|'",
+        "os.path.join(os.path.dirname(__file__), '..', 'config', '|')",
+        "folder = os.path.join(share, 'config')\nopen(os.path.join(folder, '|'))",
+    ],
+)
+def test_pieces_of_a_path_continue_with_files_that_exist(at, written):
+    assert at(written).labels() == ["lamp.yaml"]
+
+
+def test_a_path_is_followed_and_explained(at):
+    place = at("os.path.join(share, 'config', 'lamp|.yaml')")
+    assert place.targets() == ["lamp.yaml:"]
+    assert "config/lamp.yaml" in place.hover()
+    assert place.links() == ["lamp.yaml"]
+    assert at("os.path.join(share, 'config', 'la|mps.yaml')").hover().endswith("lamps.yaml` does not exist")
+
+
+def test_configurations_are_the_declared_arguments(at):
+    declared = "DeclareLaunchArgument('gui', default_value='true', description='Show ' 'it')\n"
+    assert at(f"{declared}LaunchConfiguration('|").labels() == ["gui"]
+    place = at(f"{declared}LaunchConfiguration('g|ui')")
+    assert place.hover() == "**gui** = `true`, lamp.launch.py\n\nShow it"
+    assert place.targets() == ["lamp.launch.py:gui"]
+
+
+@pytest.mark.parametrize("pairs", ["{'|'}.items()", "{'x': '1', '|': '2'}.items()", "[('|', 'red')]", "[('x', y), ('|"])
+def test_arguments_of_an_included_file_are_known(at, pairs):
+    assert at(INCLUDE.format(pairs)).labels() == ["colour", "x", "y"]
+
+
+def test_values_of_an_included_argument_are_its_choices(at):
+    assert at(INCLUDE.format("{'colour': '|'}.items()")).labels() == ["red", "blue"]
+    assert at(INCLUDE.format("[('colour', '|')]")).labels() == ["red", "blue"]
+    assert at(INCLUDE.format("{'col|our': 'red'}.items()")).targets() == ["parts.launch.py:colour"]
+
+
+def test_a_statement_ends_unfinished_brackets():
+    python = PythonText("a = join(x, 'b'\ndef f():\n    c = LaunchConfiguration('d')\n")
+    (call,) = python.calls_of("LaunchConfiguration")
+    assert call.parent is not None
+    assert call.parent.group is python.root
+
+
+def test_arguments_that_a_loop_declares_are_known():
+    text = (
+        "KNOWN = {'a': ('1', 'first'), 'b': ('2', 'second')}\n"
+        "[DeclareLaunchArgument(n, default_value=d, description=t) for n, (d, t) in KNOWN.items()]\n"
+        "for axis in ['x', 'y']:\n    add(DeclareLaunchArgument(axis, default_value='0'))\n"
+    )
+    found = {argument.name: (argument.default, argument.description) for argument in arguments_in(text, Path("a.py"))}
+    assert found == {"a": ("1", "first"), "b": ("2", "second"), "x": ("0", ""), "y": ("0", "")}
+
+
+def test_symbols_are_arguments_nodes_and_included_files(at):
+    place = at(f"|DeclareLaunchArgument('gui')\nNode(package='p', executable='e')\n{INCLUDE.format('[]')}")
+    names = [symbol.name for symbol in place.format.symbols(place.document)]
+    assert names == ["arg gui", "Node e", "include parts.launch.py"]
+
+
+def test_true_and_false_are_written_as_elsewhere_in_the_file(at):
+    assert at("DeclareLaunchArgument('use_x', default_value='|')").labels()[:2] == ["true", "false"]
+    text = "DeclareLaunchArgument('a', default_value='True')\nDeclareLaunchArgument('use_x', default_value='|')"
+    assert at(text).labels()[:2] == ["True", "False"]
+
+
+def test_names_that_the_caller_declares_are_offered_after_those_of_the_file(at):
+    text = "DeclareLaunchArgument('a')\nb = LaunchConfiguration('outer')\nc = LaunchConfiguration('|')"
+    assert at(text).labels() == ["a", "outer"]
+
+
+def test_a_dependency_that_is_not_found_is_offered(at):
+    manifest = at("|").document.file.parents[1] / "package.xml"
+    manifest.write_text(manifest.read_text().replace("</package>", "<exec_depend>far_away</exec_depend></package>"))
+    assert "far_away" in at("Node(package='|')").labels()[:3]
+
+
+def test_classes_of_launch_and_their_arguments_are_explained(at):
+    assert at("No|de(package='a')").hover().startswith("**Node**: Starts a node.")
+    assert at("Node(pack|age='a')").hover() == "`package`: the package of the executable."
+    assert "package" in at("Node(|").labels()[0]
+    assert at("Node(package='a', exec|").labels()[0] == "executable="
+    assert at("Node(package='a', parameters=[{|").labels() == []
+    assert at("DeclareLaunchArgument('a', |)").labels()[:2] == ["default_value=", "description="]
+    assert at("f(|)").labels() == []
+
+
+def test_a_configuration_in_a_path_has_its_default(at):
+    declared = "DeclareLaunchArgument('package', default_value='lamp_bringup')\np = LaunchConfiguration('package')\n"
+    assert at(f"{declared}PathJoinSubstitution([FindPackageShare(p), 'config', '|'])").labels() == ["lamp.yaml"]
+
+
+def test_a_value_is_explained_by_its_argument(at):
+    assert "Its colour" in at(INCLUDE.format("{'colour': 're|d'}.items()")).hover()
+    assert at("Node(name='ab|c')").hover() == "`name`: the name to give to the node."
+    assert at("Node(package='nowh|ere')").hover() == "package 'nowhere' not found"

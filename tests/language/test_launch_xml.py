@@ -1,0 +1,129 @@
+"""Launch files in XML: completion, hover and definition."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from linkwright.language.launch_schema import LAUNCH
+from linkwright.launch.frontend.extensions import ACTIONS, load
+from linkwright.launch.frontend.xml import Entity, Parser
+from linkwright.launch.model.markup.expose import action_parse_methods
+from linkwright.schema import ElementRule
+from linkwright.xmltree import parse
+from tests.language.formats import Place, make_packages
+
+
+@pytest.fixture
+def at(tmp_path: Path):
+    folder = make_packages(tmp_path)
+    return lambda text: Place(folder / "launch" / "lamp.launch.xml", f"<launch>{text}</launch>")
+
+
+def test_the_table_has_the_tags_of_the_actions():
+    assert list(load(ACTIONS))
+    assert {*action_parse_methods} - {"push-ros-namespace"} <= {*LAUNCH.child_rules}
+
+
+VALUES = {"true or false": "true", "number": "1.0", "integer": "1", "level of a log": "info"}
+
+
+def written(rule: ElementRule) -> str:
+    """Return an element with the attributes that it needs."""
+    needed = [attribute for attribute in rule.attributes if attribute.required]
+    attributes = "".join(f' {each.name}="{VALUES.get(each.type.name, "a")}"' for each in needed)
+    return f"<{rule.tag}{attributes}/>"
+
+
+@pytest.mark.parametrize("tag", sorted(LAUNCH.child_rules))
+def test_the_table_has_the_attributes_that_an_action_reads(tag, monkeypatch):
+    asked: set[str] = set()
+    read = Entity.get_attr
+
+    def recording(entity: Entity, name: str, **options):
+        if entity.parent is None:
+            asked.add(name)
+        return read(entity, name, **options)
+
+    monkeypatch.setattr(Entity, "get_attr", recording)
+    assert list(load(ACTIONS))
+    rule = LAUNCH.child_rules[tag]
+    children = "".join(map(written, rule.children)) if tag in ("load_composable_node", "rep_env") else ""
+    text = written(rule).replace("/>", f">{children}</{tag}>")
+    Parser().parse_action(Entity(parse(text, "a.launch.xml").root))
+    of_python_or_yaml = {"choices", "level"} if tag in ("arg", "bool_arg") or tag.startswith("log_") else set()
+    assert asked <= {*rule.attribute_rules, *rule.child_rules, "choice"} | of_python_or_yaml
+    assert {*rule.attribute_rules} <= asked
+
+
+def test_elements_and_attributes_come_from_the_table(at):
+    assert at("<no|").labels() == ["node", "node_container"]
+    assert at("<group><timer period='1'><inc|").labels() == ["include"]
+    assert at("<node |/>").labels()[:2] == ["pkg", "exec"]
+    assert "xacro:if" not in at("<|").labels()
+    assert at("<node pkg='a' exec='b'><re|").labels() == ["remap"]
+
+
+def test_packages_start_with_the_own_one_and_its_dependencies(at):
+    assert at('<node pkg="|"/>').labels()[:2] == ["lamp_bringup", "lamp_nodes"]
+    assert at('<let name="a" value="$(find-pkg-share lamp_n|"/>').labels() == ["lamp_nodes"]
+
+
+def test_executables_are_those_of_the_package(at):
+    assert at('<node pkg="lamp_nodes" exec="|"/>').labels() == ["blink"]
+    assert at('<node exec="g|" pkg="lamp_bringup"/>').labels() == ["glow"]
+    assert at('<node pkg="lamp_nodes" exec="bl|ink"/>').targets() == ["blink.py:main"]
+    assert at('<node pkg="lamp_bringup" exec="gl|ow"/>').targets() == ["CMakeLists.txt:glow"]
+    assert at('<composable_node pkg="lamp_bringup" plugin="|"/>').labels() == ["lamp_bringup::Fader"]
+
+
+def test_variables_are_the_arguments_of_the_file(at):
+    declared = '<arg name="gui" default="true" description="Show it"/><let name="b" value="2"/>'
+    assert at(f'{declared}<log message="$(var |"/>').labels() == ["gui", "b"]
+    assert at(f'{declared}<node if="|"/>').labels()[0] == "$(var gui)"
+    place = at(f'{declared}<log message="$(var g|ui)"/>')
+    assert place.hover() == "**gui** = `true`, lamp.launch.xml\n\nShow it"
+    assert place.targets() == ["lamp.launch.xml:gui"]
+
+
+@pytest.mark.parametrize(
+    ("file", "names"),
+    [("parts.launch.xml", ["rate", "mode"]), ("parts.launch.py", ["colour", "x", "y"])],
+)
+def test_arguments_of_an_included_file_are_known(at, file, names):
+    include = f'<include file="$(find-pkg-share lamp_bringup)/launch/{file}"><arg '
+    assert at(f'{include} name="|"/></include>').labels() == names
+    assert at(f'{include} name="{names[0]}"/><arg name="|"/></include>').labels() == names[1:]
+    place = at(f'{include} name="{names[0][:2]}|{names[0][2:]}"/></include>')
+    assert place.targets() == [f"{file}:{names[0]}"]
+
+
+def test_values_of_an_included_argument_are_its_choices(at):
+    include = '<include file="$(dirname)/parts.launch.xml"><arg name="mode" value="|"/></include>'
+    assert at(include).labels()[:2] == ["slow", "fast"]
+    assert at(f'<arg name="mode"/>{include}').labels()[0] == "$(var mode)"
+
+
+def test_paths_continue_with_files_that_exist(at):
+    assert at('<include file="$(find-pkg-share lamp_bringup)/|"/>').labels()[:2] == ["config", "launch"]
+    assert at('<param from="$(find-pkg-share lamp_bringup)/config/l|"/>').labels() == ["lamp.yaml"]
+    assert at('<include file="|"/>').labels()[0] == "$(find-pkg-share "
+    chained = '<arg name="p" default="$(find-pkg-share lamp_bringup)/config"/><param from="$(var p)/la|mp.yaml"/>'
+    assert at(chained).labels() == ["lamp.yaml"]
+    assert at(chained).targets() == ["lamp.yaml:"]
+    assert at(chained).links() == ["lamp.yaml"]
+
+
+def test_substitutions_are_explained(at):
+    assert at('<let name="a" value="$(|"/>').labels()[:2] == ["var", "find-pkg-share"]
+    assert "share folder" in at('<let name="a" value="$(find-p|kg-share lamp_nodes)"/>').hover()
+    assert "Nodes of a lamp." in at('<let name="a" value="$(find-pkg-share lamp_n|odes)"/>').hover()
+
+
+def test_symbols_are_the_elements_with_what_names_them(at):
+    (launch,) = at('|<arg name="a"/><group><node pkg="p" exec="e"/></group>').format.symbols(
+        at('|<arg name="a"/><group><node pkg="p" exec="e"/></group>').document
+    )
+    assert [child.name for child in launch.children] == ["arg a", "group"]
+    assert [child.name for child in launch.children[1].children] == ["node e"]

@@ -1,0 +1,63 @@
+"""Launch files in YAML: completion, hover and definition."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.language.formats import Place, make_packages
+
+
+@pytest.fixture
+def at(tmp_path: Path):
+    folder = make_packages(tmp_path)
+    return lambda text: Place(folder / "launch" / "lamp.launch.yaml", text)
+
+
+NODE = "launch:\n- node:\n    pkg: lamp_nodes\n    exec: blink\n"
+INCLUDE = (
+    "launch:\n- include:\n    file: $(find-pkg-share lamp_bringup)/launch/parts.launch.xml\n    arg:\n    - name: "
+)
+
+
+def test_keys_come_from_the_table(at):
+    assert at("|").labels() == ["launch"]
+    assert at("launch:\n- no|").labels() == ["node", "node_container"]
+    assert at(f"{NODE}    na|").labels() == ["name", "namespace"]
+    assert at(f"{NODE}    pa|").labels() == ["param"]
+    assert at(f"{NODE}    param:\n    - fr|").labels() == ["from"]
+    assert at("launch:\n- group:\n  - inc|").labels() == ["include"]
+    assert at("launch:\n- timer:\n    period: 1.0\n    children:\n    - inc|").labels() == ["include"]
+
+
+def test_values_are_those_of_the_element(at):
+    assert at("launch:\n- node:\n    pkg: |").labels()[:2] == ["lamp_bringup", "lamp_nodes"]
+    assert at('launch:\n- node:\n    pkg: "lamp_nodes"\n    exec: "|"').labels() == ["blink"]
+    assert at(f"{NODE}    output: |").labels()[:2] == ["screen", "log"]
+    assert at(NODE.replace("blink", "bl|ink")).targets() == ["blink.py:main"]
+
+
+def test_arguments_of_the_file_and_of_included_files(at):
+    assert at(f"{INCLUDE}|").labels() == ["rate", "mode"]
+    assert at(f"{INCLUDE}rate\n      value: '3'\n    - name: |").labels() == ["mode"]
+    assert at(f'{INCLUDE}mode\n      value: "|"').labels()[:2] == ["slow", "fast"]
+    assert at(f"{INCLUDE}ra|te").targets() == ["parts.launch.xml:rate"]
+    declared = 'launch:\n- arg:\n    name: "gui"\n    default: "true"\n    description: "Show it"\n'
+    place = at(f'{declared}- let:\n    name: a\n    value: "$(var g|ui)"')
+    assert place.labels() == ["gui"]
+    assert place.hover() == "**gui** = `true`, lamp.launch.yaml\n\nShow it"
+
+
+def test_paths_and_links(at):
+    place = at("launch:\n- node:\n    param:\n    - from: $(find-pkg-share lamp_bringup)/config/la|mp.yaml")
+    assert place.labels() == ["lamp.yaml"]
+    assert place.links() == ["lamp.yaml"]
+    assert "starts a node" in at("launch:\n- no|de:\n    pkg: a\n").hover()
+    assert "package of the executable" in at("launch:\n- node:\n    p|kg: a\n").hover()
+
+
+def test_symbols_are_the_actions(at):
+    place = at(f"|{NODE}- group:\n  - executable:\n      cmd: ls\n")
+    (launch,) = place.format.symbols(place.document)
+    assert [child.name for child in launch.children] == ["node blink", "group"]

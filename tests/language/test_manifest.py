@@ -1,0 +1,50 @@
+"""``package.xml``: completion, hover and definition."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.language.formats import Place, make_packages
+
+
+@pytest.fixture
+def at(tmp_path: Path):
+    folder = make_packages(tmp_path)
+    return lambda text: Place(folder / "package.xml", f'<package format="3"><name>lamp_bringup</name>{text}</package>')
+
+
+def test_dependencies_are_packages_that_are_not_declared_yet(at):
+    assert at("<buildtool_depend>|</buildtool_depend>").labels()[0] == "ament_cmake"
+    assert at("<exec_depend>lamp|</exec_depend>").labels() == ["lamp_nodes"]
+    assert at("<depend>lamp_nodes</depend><exec_depend>lamp|</exec_depend>").labels() == []
+    assert at("<test_depend>\n    ament_l|</test_depend>").labels()[0] == "ament_lint_auto"
+
+
+def test_texts_and_attributes_have_their_values(at):
+    assert at("<export><build_type>|</build_type></export>").labels()[:2] == ["ament_cmake", "ament_python"]
+    assert at("<license>|</license>").labels()[0] == "Apache-2.0"
+    assert at('<url type="|">').labels() == ["website", "bugtracker", "repository"]
+
+
+def test_elements_that_occur_once_are_offered_once(at):
+    assert at("<|").labels()[0] == "version"
+    assert "name" not in at("|").labels()
+    assert at("<export><build|").labels() == ["build_type"]
+
+
+def test_a_dependency_is_explained_and_leads_to_its_package(at):
+    place = at("<exec_depend>lamp_n|odes</exec_depend>")
+    assert "Nodes of a lamp." in place.hover()
+    assert place.targets() == ["package.xml:"]
+    assert "needed to run" in at("<exec_de|pend>").hover()
+
+
+def test_symbols_are_the_elements_with_their_texts(at):
+    place = at("|<depend>lamp_nodes</depend>")
+    (package,) = place.format.symbols(place.document)
+    assert (package.name, [child.detail for child in package.children]) == (
+        "lamp_bringup",
+        ["lamp_bringup", "lamp_nodes"],
+    )

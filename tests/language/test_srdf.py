@@ -1,0 +1,59 @@
+"""SRDF: completion, hover and definition of groups, and of links and joints of the description."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.language.formats import Place, make_packages
+
+LAMP = """<robot name="lamp" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <link name="foot"/>
+  <xacro:macro name="arm" params="side">
+    <link name="${side}_arm"/>
+    <joint name="${side}_joint" type="fixed"><parent link="foot"/><child link="${side}_arm"/></joint>
+  </xacro:macro>
+  <xacro:arm side="left"/><xacro:arm side="right"/>
+</robot>
+"""
+
+
+@pytest.fixture
+def at(tmp_path: Path):
+    folder = make_packages(tmp_path)
+    description = folder.parent / "lamp_nodes" / "urdf" / "lamp.urdf.xacro"
+    description.parent.mkdir()
+    description.write_text(LAMP)
+
+    def place(text: str) -> Place:
+        found = Place(folder / "config" / "lamp.srdf", f'<robot name="lamp">{text}</robot>')
+        found.document.project.index.refresh()
+        return found
+
+    return place
+
+
+def test_links_and_joints_are_those_of_the_expanded_description(at):
+    assert at('<group name="g"><chain base_link="|"/>').labels() == ["foot", "left_arm", "right_arm"]
+    assert at('<group_state name="s" group="g"><joint name="|"/>').labels() == ["left_joint", "right_joint"]
+    assert at('<group name="g"><joint name="left_joint"/><joint name="|"/></group>').labels() == ["right_joint"]
+
+
+def test_groups_are_those_of_the_file(at):
+    text = '<group name="a"/><group name="b"><group name="|"/></group>'
+    assert at(text).labels() == ["a", "b"]
+    assert at('<group name="a"/><group_state group="|"/>').labels() == ["a"]
+    assert at('<group name="a"/><group_state group="a|"/>').targets() == ["lamp.srdf:a"]
+
+
+def test_elements_and_fixed_values_come_from_the_table(at):
+    assert at("<dis|").labels() == ["disable_collisions", "disable_default_collisions"]
+    assert at('<disable_collisions link1="a" link2="b" reason="|"/>').labels()[:2] == ["Adjacent", "Never"]
+
+
+def test_a_link_is_explained_and_leads_to_the_macro_that_makes_it(at):
+    place = at('<passive_joint name="left_jo|int"/>')
+    assert "fixed joint from `foot` to `left_arm`" in place.hover()
+    assert place.targets() == ["lamp.urdf.xacro:${side}_joint"]
+    assert at('<group name="g"><link name="fo|ot"/></group>').targets() == ["lamp.urdf.xacro:foot"]

@@ -1,0 +1,81 @@
+"""Launch files, interfaces, SRDF and ``package.xml``, through the protocol."""
+
+from __future__ import annotations
+
+import pytest
+from lsprotocol import types
+
+XML = """<launch>
+  <arg name="机" default="true" description="Show it"/>
+  <node pkg="arm_description" exec="x" if="$(var 机█)"/>
+  <include file="$(find-pkg-share arm_description)/launch/other.launch.py"/>
+</launch>
+"""
+PYTHON = """def generate_launch_description():
+    arm = get_package_share_directory('arm_description')
+    return LaunchDescription([DeclareLaunchArgument('speed', default_value='1'),
+        Node(package='█', name='arm')])
+"""
+
+
+def opened(editor, name: str, text: str) -> types.TextDocumentPositionParams:
+    """Open a text, and return the place of its cursor."""
+    before = text[: text.index("█")]
+    editor.open(name, text.replace("█", ""))
+    at = types.Position(before.count("\n"), len(before) - before.rfind("\n") - 1)
+    return types.TextDocumentPositionParams(editor.document(name), at)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "first"),
+    [
+        ("launch/a.launch.xml", '<launch><node pkg="█"/></launch>', "arm_description"),
+        ("launch/a.launch.py", PYTHON, "arm_description"),
+        ("msg/A.msg", "float█", "float64"),
+        ("package.xml", "<package><export><build_type>█</build_type>", "ament_cmake"),
+        ("config/arm.srdf", '<robot name="arm"><group name="g"><joint name="█"/>', "upper_joint"),
+        ("config/arm.srdf", '<robot name="arm"><group name="g"><chain base_link="█"/>', "base"),
+    ],
+)
+async def test_the_right_completion_comes_first(editor, name, text, first):
+    asked = opened(editor, name, text)
+    found = await editor.client.text_document_completion_async(
+        types.CompletionParams(asked.text_document, asked.position)
+    )
+    typed = "float" if name.endswith(".msg") else ""
+    shown = [item for item in sorted(found, key=lambda item: item.sort_text) if item.label.startswith(typed)]
+    assert shown[0].label == first
+
+
+async def test_a_hover_and_the_definition_of_an_argument(editor):
+    asked = opened(editor, "launch/a.launch.xml", XML)
+    hover = await editor.client.text_document_hover_async(types.HoverParams(asked.text_document, asked.position))
+    assert "Show it" in hover.contents.value
+    (found,) = await editor.client.text_document_definition_async(
+        types.DefinitionParams(asked.text_document, asked.position)
+    )
+    assert found.range == types.Range(types.Position(1, 13), types.Position(1, 14))
+
+
+async def test_links_and_symbols_of_launch_files(editor):
+    launch = editor.folder / "launch"
+    launch.mkdir()
+    (launch / "other.launch.py").write_text("")
+    asked = opened(editor, "launch/a.launch.xml", XML)
+    (link,) = await editor.client.text_document_document_link_async(types.DocumentLinkParams(asked.text_document))
+    assert link.target == editor.uri("launch/other.launch.py")
+    asked = opened(editor, "launch/b.launch.py", PYTHON)
+    found = await editor.client.text_document_document_symbol_async(types.DocumentSymbolParams(asked.text_document))
+    assert [symbol.name for symbol in found] == ["arg speed", "Node arm"]
+
+
+async def test_references_and_highlights_of_an_argument(editor):
+    asked = opened(editor, "launch/a.launch.xml", XML)
+    found = await editor.client.text_document_references_async(
+        types.ReferenceParams(types.ReferenceContext(include_declaration=True), asked.text_document, asked.position)
+    )
+    assert [place.range.start.line for place in found] == [1, 2]
+    found = await editor.client.text_document_document_highlight_async(
+        types.DocumentHighlightParams(asked.text_document, asked.position)
+    )
+    assert [place.range.start.line for place in found] == [1, 2]

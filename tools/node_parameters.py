@@ -1,0 +1,298 @@
+"""Write the table of the parameters of Linkwright's nodes and their plugins, for the language server.
+
+Most nodes declare their parameters in code. Each node is therefore started in a graph without a network, with each type
+of plugins that it loads, and its declarations are recorded, with the descriptions of the tables that it reads.
+
+Usage: python tools/node_parameters.py [--check]
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import math
+import re
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from importlib import import_module
+from itertools import product
+from pathlib import Path
+from typing import Any
+from unittest import mock
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import Graph
+from linkwright.graph.parameters.node_parameters import NodeParameters
+from linkwright.graph.parameters.parameter import ParameterRules, ParameterType
+from linkwright.graph.parameters.store import ParameterStore
+from linkwright.navigation.nodes import behavior_server, collision_zones, costmap_layers, followers, planner_server
+from linkwright.nodes import parameter_tables
+from linkwright.nodes.options import EXECUTABLES, NodeOptions
+
+ROOT = Path(__file__).resolve().parent.parent
+TEXTS = ROOT / "tools" / "node_parameters.toml"
+LIST = ROOT / "src" / "linkwright" / "language" / "node_parameters.json"
+
+tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
+
+_FOLLOWERS = (followers.DWB, followers.MPPI, followers.PURE_PURSUIT, followers.ROTATION_SHIM)
+_RECORD = re.compile(r"\{\s+([^{}]*?)\s+\}")
+"""An object in the text that contains no other one; each parameter is one line."""
+_SENSOR = re.compile(r"^(odom|imu|pose|twist)\d")
+_PLUGIN, _ITEM, _PART = "THE_PLUGIN", "THE_ITEM", "THE_PART"
+_ROBOT = '<robot name="r"><link name="base_link"/></robot>'
+_LEFT_OUT = ("cam2image", "teleop_twist_keyboard", "rmw_zenohd", "_node.py", "static_transform_publisher")
+_PACKAGES_LEFT_OUT = ("gazebo_ros", "ros_gz_", "ros_ign_", "audio_", "demo_nodes", "tf2_tools", "my_robot_voice")
+_EVERYWHERE = ("use_sim_time", "qos_overrides", "start_type_description_service", "strict_callback_groups")
+_NEEDED: Mapping[str, dict[str, Any]] = {
+    "ekf_node": {f"{name}{number}": "a" for name in ("odom", "imu", "pose", "twist") for number in range(2)},
+    "ukf_node": {f"{name}{number}": "a" for name in ("odom", "imu", "pose", "twist") for number in range(2)},
+    "lifecycle_manager": {"node_names": ["a"]},
+    "robot_state_publisher": {"robot_description": _ROBOT},
+    "delay": {"input_topic": "a"},
+    "demux": {"output_topics": ["a"], "input_topic": "b"},
+    "drop": {"input_topic": "a"},
+    "mux": {"input_topics": ["a"]},
+    "relay": {"input_topic": "a"},
+    "throttle": {"input_topic": "a", "throttle_type": "messages"},
+    "twist_mux": {
+        f"{group}.{_ITEM}.{name}": value
+        for group in ("topics", "locks")
+        for name, value in (("topic", "a"), ("timeout", 0.5), ("priority", 1))
+    },
+}
+"""The parameters without which a node does not start, by executable."""
+
+
+def _zones() -> Iterator[dict[str, Any]]:
+    """Yield the parameters of a collision monitor with one zone or one sensor, for each of their types."""
+    points = "[[0.1, 0.1], [0.1, -0.1], [-0.1, 0.0]]"
+    for kind, action in product(collision_zones._TYPES, collision_zones._ACTIONS):
+        zone = {"type": kind, "action_type": action, "points": points, "radius": 0.1, "visualize": True}
+        zone |= {"velocity_polygons": [_PART]} if kind == "velocity_polygon" else {}
+        zone |= {f"{_PART}.points": points}
+        yield {"polygons": [_ITEM], **{f"{_ITEM}.{name}": value for name, value in zone.items()}}
+    for kind in ("scan", "pointcloud", "range"):
+        yield {"observation_sources": [_ITEM], f"{_ITEM}.type": kind}
+
+
+_VARIANTS: Mapping[str, list[dict[str, Any]]] = {"collision_monitor": [*_zones()]}
+"""Several sets of parameters with which a node is started, by executable."""
+
+
+def _layer_types() -> list[str]:
+    names = ("StaticLayer", "ObstacleLayer", "VoxelLayer", "InflationLayer", "DenoiseLayer", "RangeSensorLayer")
+    return [*dict.fromkeys((*costmap_layers.DEFAULT_LAYERS.values(), *(f"nav2_costmap_2d::{name}" for name in names)))]
+
+
+def _plugins() -> Iterator[tuple[str, str, str, str]]:
+    """Yield the executable, the node, the parameter that lists plugins, and the type of each plugin."""
+    for kind in _FOLLOWERS:
+        yield "controller_server", "controller_server", "controller_plugins", kind
+    for kind in ("SimpleGoalChecker", "StoppedGoalChecker"):
+        yield "controller_server", "controller_server", "goal_checker_plugins", f"nav2_controller/{kind}"
+    for kind in ("SimpleProgressChecker", "PoseProgressChecker"):
+        yield "controller_server", "controller_server", "progress_checker_plugins", f"nav2_controller/{kind}"
+    for kind in (planner_server._NAVFN, *planner_server._OTHERS):  # the tables of the node
+        yield "planner_server", "planner_server", "planner_plugins", kind
+    for kind, _ in behavior_server._TYPES.values():
+        yield "behavior_server", "behavior_server", "behavior_plugins", kind
+    yield "smoother_server", "smoother_server", "smoother_plugins", "nav2_smoother/SimpleSmoother"
+    yield (
+        "waypoint_follower",
+        "waypoint_follower",
+        "waypoint_task_executor_plugin",
+        "nav2_waypoint_follower/WaitAtWaypoint",
+    )
+    for kind in _layer_types():
+        yield "controller_server", "local_costmap", "plugins", kind
+
+
+Declarations = dict[str, dict[str, dict[str, Any]]]
+"""The parameters by node name."""
+
+
+@contextmanager
+def _recording(found: Declarations, given: Mapping[str, Any]) -> Iterator[None]:
+    """Record the parameters that nodes declare; values that they were given are not their defaults."""
+    start, declare, read = NodeParameters.__init__, ParameterStore.declare, parameter_tables._Reader.read
+    owners: dict[int, str] = {}
+    declared: list[tuple[ParameterStore, str, Any, Any]] = []
+    tables: dict[tuple[str, str], parameter_tables.TableEntry] = {}
+
+    def starting(node: Any, store: ParameterStore) -> None:
+        owners[id(store)] = node.get_name()
+        start(node, store)
+
+    def declaring(store: ParameterStore, name: str, default: Any, descriptor: Any, **options: Any) -> Any:
+        declared.append((store, name, default, descriptor))
+        return declare(store, name, default, descriptor, **options)
+
+    def reading(reader: Any, table: Any, prefix: str = "", usual: Any = None) -> Any:
+        for entry in parameter_tables.entries(table, prefix):
+            tables.setdefault((reader._node.get_name(), entry.name), entry)
+        return read(reader, table, prefix, usual)
+
+    with (
+        mock.patch.object(NodeParameters, "__init__", starting),
+        mock.patch.object(ParameterStore, "declare", declaring),
+        mock.patch.object(parameter_tables._Reader, "read", reading),
+    ):
+        yield
+    for store, name, default, descriptor in declared:
+        owner = owners[id(store)]
+        if not name.startswith(_EVERYWHERE):
+            record = _record(default, descriptor, tables.get((owner, name)))
+            if record.get("default") == _ITEM or (name in given and record.get("default") == given[name]):
+                del record["default"]
+            listing = [key for key, value in given.items() if value == [_ITEM]]
+            known = found.setdefault(owner, {}).setdefault(name, record)
+            if name.startswith(f"{_ITEM}.") and listing:
+                known["keys"] = sorted({*known.get("keys", ()), *listing})
+    for (owner, name), entry in tables.items():  # those of one distribution, which are not declared in the other one
+        if "*" not in name:
+            found.setdefault(owner, {}).setdefault(name, _record(entry.default, None, entry))
+
+
+def _record(default: Any, descriptor: Any, entry: parameter_tables.TableEntry | None) -> dict[str, Any]:
+    """Return the type, the default and the description of a parameter; what is not known is left out."""
+    kind = default if isinstance(default, ParameterType) else ParameterType.from_parameter_value(_listed(default))
+    if kind is ParameterType.NOT_SET and descriptor is not None and descriptor.type:
+        kind = ParameterType(descriptor.type)
+    if entry is not None:
+        kind = entry.kind
+    if default == []:
+        kind = ParameterType.STRING_ARRAY  # an empty list tells no type
+    record: dict[str, Any] = {"type": kind.name.lower().replace("not_set", "")}
+    if default is not None and not isinstance(default, ParameterType):
+        record["default"] = _plain(default)
+    description = getattr(descriptor, "description", "") or (entry.description if entry else "")
+    record |= {"description": description} if description else {}
+    record |= {"choices": list(entry.choices)} if entry and entry.choices else {}
+    return record
+
+
+def _listed(value: Any) -> Any:
+    return list(value) if isinstance(value, tuple) else value
+
+
+def _plain(value: Any) -> Any:
+    """Return a value for JSON; numbers that it lacks are texts, as YAML has them."""
+    if isinstance(value, (list, tuple)):
+        return [_plain(item) for item in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return f"{'-' if value < 0 else ''}.{'nan' if math.isnan(value) else 'inf'}"
+    return value
+
+
+def _start(executable: tuple[str, str], parameters: Mapping[str, Any], others: ParameterRules) -> None:
+    """Start a node, configure it, and close it; an error after the declarations is of no interest."""
+    options = NodeOptions(parameters=dict(parameters), for_others=others, output=lambda _: None)
+    running = None
+    with suppress(LinkwrightError, OSError):
+        running = EXECUTABLES[executable](Graph(), options)
+        if hasattr(running.node, "trigger_configure"):
+            running.node.trigger_configure()
+    with suppress(Exception):
+        if running is not None:
+            running.close()
+
+
+def _nodes() -> Declarations:
+    found: Declarations = {}
+    for package, executable in EXECUTABLES:
+        if not executable.endswith(_LEFT_OUT) and not package.startswith(_PACKAGES_LEFT_OUT):
+            for given in _VARIANTS.get(executable) or [_NEEDED.get(executable, {})]:
+                with _recording(found, given):
+                    _start((package, executable), given, ParameterRules())
+    return {node: _without_plugins(found[node]) for node in sorted(found) if found[node]}
+
+
+def _without_plugins(parameters: Mapping[str, dict[str, Any]]) -> dict[str, dict[str, Any]]:
+    """Return the parameters of a node without those of its default plugins, whose types a file may replace."""
+    plugins = tuple(name.removesuffix("plugin") for name in parameters if name.endswith(".plugin"))
+    return {
+        name: record for name, record in parameters.items() if not name.startswith(plugins) or name.endswith(".plugin")
+    }
+
+
+def _plugin_tables() -> Iterator[tuple[str, dict[str, Any]]]:
+    """Yield the type of each plugin, with the nodes and parameters that list it, and its own parameters."""
+    for executable, node, listed, kind in _plugins():
+        names: Any = _PLUGIN if listed.endswith("_plugin") else [_PLUGIN]
+        given = {listed: names, f"{_PLUGIN}.plugin": kind}
+        others = ParameterRules()
+        if node != executable:
+            given[f"{_PLUGIN}.observation_sources"] = _ITEM
+            for name, value in given.items():
+                others.set(f"/{node}/{node}", name, value)
+        package = next(package for package, name in EXECUTABLES if name == executable)
+        found: Declarations = {}
+        with _recording(found, given):
+            _start((package, executable), {} if node != executable else given, others)
+        own = found[node]
+        names_of_plugin = [name for name in own if name.startswith(f"{_PLUGIN}.")]
+        parameters = {name.removeprefix(f"{_PLUGIN}.").replace(_ITEM, "*"): own[name] for name in names_of_plugin}
+        parameters.pop("plugin", None)
+        for name, record in parameters.items():
+            record |= {"keys": ["observation_sources"]} if "*" in name else {}
+        yield kind, {"node": node, "listed": listed, "parameters": parameters}
+
+
+def _describe(owner: str, parameters: dict[str, dict[str, Any]], texts: Mapping[str, Any]) -> None:
+    """Add the written descriptions to parameters without one, and the parameters that are only written."""
+    groups = {
+        "COSTMAP": owner.endswith("_costmap"),
+        "ROBOT_LOCALIZATION": owner.endswith(("kf_filter_node",)),
+        "LAYER": owner.startswith("nav2_costmap_2d"),
+        "FOLLOWER": owner.replace("::", "/") in _FOLLOWERS,
+    }
+    package, _, name = owner.partition("/")
+    tables = [texts.get(owner, {}), texts.get(package, {}).get(name, {})]
+    written = [*tables, *([texts["FOLLOWER"]] if owner == followers.MPPI else [])]
+    tables += [texts[group] for group, applies in groups.items() if applies]
+    for table in written:
+        parameters |= {name: entry for name, entry in table.items() if isinstance(entry, dict) and "type" in entry}
+    for parameter, record in parameters.items():
+        key = (
+            _SENSOR.sub("SENSOR", parameter)
+            if groups["ROBOT_LOCALIZATION"]
+            else parameter.replace(_ITEM, "*").replace(_PART, "*")
+        )
+        key = "plugin" if key.endswith(".plugin") else key
+        text = next((table[key] for table in [*tables, texts["any"]] if isinstance(table.get(key), str)), "")
+        if text and "description" not in record:
+            record["description"] = text
+        choices = next((table[key] for table in tables if isinstance(table.get(key), dict)), {})
+        record |= choices if "type" not in choices else {}
+
+
+async def _table() -> str:
+    texts = tomllib.loads(TEXTS.read_text(encoding="utf-8"))
+    nodes = _nodes()
+    nodes.setdefault("controller_manager", {})
+    plugins = dict(_plugin_tables())
+    for owner, parameters in nodes.items():
+        _describe(owner, parameters, texts)
+    for owner, plugin in plugins.items():
+        _describe(owner, plugin["parameters"], texts)
+    content = {"nodes": nodes, "plugins": plugins}
+    text = json.dumps(content, indent=1, ensure_ascii=False).replace(_ITEM, "*").replace(_PART, "*")
+    return _RECORD.sub(lambda found: "{" + " ".join(found[1].split()) + "}", text) + "\n"
+
+
+def main(words: list[str]) -> int:
+    """Write the table, or check it; returns the exit status."""
+    text = asyncio.run(_table())
+    if words == ["--check"]:
+        if LIST.read_text(encoding="utf-8") == text:
+            return 0
+        print(f"{LIST.relative_to(ROOT)} is stale: run `python tools/node_parameters.py`", file=sys.stderr)
+        return 1
+    LIST.write_text(text, encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main(sys.argv[1:]))
