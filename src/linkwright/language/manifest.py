@@ -92,7 +92,7 @@ def _texts(document: Document, tag: str, start: int) -> Iterator[Completion]:
 
 
 def _dependencies(document: Document, tag: str, start: int) -> Iterator[Completion]:
-    """Yield packages: those that launch files and descriptions use, the usual ones of the tag, and all that are found.
+    """Yield packages: those that launch files and descriptions use, the usual ones of the tag, and the found ones.
 
     Declared packages are left out.
     """
