@@ -56,12 +56,17 @@ class Editor:
     def __init__(self, client: LanguageClient, folder: Path) -> None:
         self.client = client
         self.diagnostics: dict[str, Sequence[types.Diagnostic]] = {}
+        self.messages: list[str] = []
         self.folder = folder
         self._versions: dict[str, int] = {}
 
         @client.feature(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS)
         def _(published: types.PublishDiagnosticsParams) -> None:
             self.diagnostics[published.uri] = published.diagnostics
+
+        @client.feature(types.WINDOW_SHOW_MESSAGE)
+        def _(shown: types.ShowMessageParams) -> None:
+            self.messages.append(shown.message)
 
     def uri(self, name: str) -> str:
         """Return the URI of a file."""

@@ -59,3 +59,22 @@ async def test_a_rename_is_refused_or_for_the_text_that_it_was_made_for(editor):
     else:
         versions = {change.text_document.uri: change.text_document.version for change in outcome.document_changes}
         assert versions[editor.uri(FILE)] == 1
+
+
+async def test_references_to_a_renamed_file_follow(editor, package):
+    (package / "launch").mkdir()
+    launch = package / "launch" / "view.launch.py"
+    launch.write_text("PATH = ('urdf', 'parts.xacro')\n")
+    editor.open("urdf/arm.urdf.xacro")
+    (package / "urdf" / "sub").mkdir()
+    renamed = types.FileRename(editor.uri("urdf/parts.xacro"), editor.uri("urdf/sub/parts2.xacro"))
+    edit = await editor.client.workspace_will_rename_files_async(types.RenameFilesParams([renamed]))
+    (change,) = edit.document_changes
+    assert change.text_document.uri == editor.uri("urdf/arm.urdf.xacro")
+    assert [each.new_text for each in change.edits] == ["sub/parts2.xacro"]
+    assert any("view.launch.py:1 (parts.xacro)" in message for message in editor.messages)
+
+
+async def test_a_file_without_references_is_renamed_without_edits(editor):
+    renamed = types.FileRename(editor.uri("urdf/arm.urdf.xacro"), editor.uri("urdf/other.urdf.xacro"))
+    assert await editor.client.workspace_will_rename_files_async(types.RenameFilesParams([renamed])) is None

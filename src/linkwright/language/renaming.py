@@ -14,18 +14,17 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, SourceText, Span, display_path, phrase, term
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, SourceText, Span, phrase, term
 from linkwright.language.definitions import NameKind
 from linkwright.language.grammar import root_of
 from linkwright.language.includes import real
 from linkwright.language.mentions import Mention, mentions_in
 from linkwright.language.occurrences import Occurrence, kinds_of_reference, kinds_of_text, occurrences_in
+from linkwright.language.proof import Edit, ExpansionPair, ExpansionProof, UnprovedError
 from linkwright.language.workspace import Workspace
-from linkwright.lint.targets import DESCRIPTIONS
 from linkwright.sdf.worlds import SDF
-from linkwright.xacro import Expansion, expand
 from linkwright.xacro.faults import Frame, frames
-from linkwright.xmltree import Element, Overlay, Text
+from linkwright.xmltree import Element, Text
 from linkwright.xmltree.positions import attribute_value_range
 
 _OF_ROBOT = (NameKind.LINK, NameKind.JOINT, NameKind.MATERIAL)
@@ -33,16 +32,6 @@ _NAME = re.compile(r"[^\s<>&\"']+")
 _ONE_NAME = re.compile(r"\$\{\s*(\w+)\s*\}")
 _MOST_ROUNDS = 4
 """How often references that still have an old name are searched."""
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class Edit:
-    """A text that replaces the characters `start` to `end` (exclusive) of a file."""
-
-    file: Path
-    start: int
-    end: int
-    text: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,8 +98,16 @@ def rename(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new:
     if taken is not None:
         message = phrase("{kind} '{name}' already exists", kind=term(name.kind.value), name=new)
         raise LinkwrightError(Diagnostic("LANG103", message, _span(project, texts, taken)))
-    proof = _Proof(project, texts, name, new)
-    proof.edits.update(Edit(seed.file, seed.start, seed.end, new) for seed in seeds)
+    try:
+        return _proved(_Proof(project, texts, name, new), seeds)
+    except UnprovedError as error:
+        raise _unproved(error.reason, name, error.span) from None
+
+
+def _proved(proof: _Proof, seeds: Iterable[Occurrence]) -> Renaming:
+    """Return the renaming with edits at the occurrences of the name, and those that follow from them."""
+    name = proof.name
+    proof.edits.update(Edit(seed.file, seed.start, seed.end, proof.new) for seed in seeds)
     if name.kind not in _OF_ROBOT:
         if name.kind is NameKind.ARGUMENT:
             proof.rename_argument()
@@ -158,6 +155,8 @@ class _Proof:
     """Edits, and the expansions of a description with and without them.
 
     Attributes:
+        name: the name that is renamed.
+        new: its new name.
         edits: the edits so far.
         unchanged: mentions of changed names that are not certain.
     """
@@ -165,32 +164,9 @@ class _Proof:
     def __init__(self, project: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> None:
         self.edits: set[Edit] = set()
         self.unchanged: tuple[Mention, ...] = ()
-        self._project, self._texts, self._name, self._new = project, texts, name, new
-        self._before: list[tuple[Path, Mapping[str, str], Element, str]] = []
-        self._error: LinkwrightError | None = None
+        self._project, self._texts, self.name, self.new = project, texts, name, new
+        self._expansions = ExpansionProof(project, texts, name.file)
         self._renamed: dict[str, str] = {}
-        self._data: set[Path] = set()
-        self._entries: set[Path] = set()
-        self._add_entries(name.file)
-
-    def _add_entries(self, file: Path) -> None:
-        """Expand the descriptions that include a file, without the edits."""
-        for entry in self._project.index.entries(file, self._texts):
-            if entry in self._entries:
-                continue
-            self._entries.add(entry)
-            for values, _ in self._project.calls(entry):
-                try:
-                    expansion = self._expand(entry, values, self._texts)
-                except LinkwrightError as error:  # noqa: PERF203 - each may fail for itself
-                    self._error = error
-                else:
-                    self._before.append((entry, values, expansion.document.root, str(expansion)))
-                    self._data.update(map(real, expansion.dependencies))
-
-    def _expand(self, entry: Path, values: Mapping[str, str], texts: Mapping[Path, str]) -> Expansion:
-        overlay = Overlay({str(path): text for path, text in texts.items()})
-        return expand(entry, values, packages=self._project.finder(entry), overlay=overlay)
 
     def rename_argument(self) -> None:
         """Rename the argument in the calls of the descriptions, too.
@@ -198,9 +174,9 @@ class _Proof:
         Raises:
             LinkwrightError: LANG104, a caller passes the argument by a name that is not written in the call.
         """
-        old, new = self._name.name, self._new
+        old, new = self.name.name, self.new
         passed = re.compile(rf"(?<!\w){re.escape(old)}(?=:=)|(?<=['\"]){re.escape(old)}(?=['\"]\s*:)")
-        for entry in self._entries:
+        for entry in self._expansions.entries:
             for values, span in self._project.calls(entry):
                 if old not in values or span is None:
                     continue
@@ -209,52 +185,21 @@ class _Proof:
                 found = {Edit(file, *match.span(), new) for match in passed.finditer(text, *_call_range(text, span))}
                 if not found:
                     why = phrase("a caller passes the argument, but its name is not written in the call")
-                    raise _unproved(why, self._name, span)
+                    raise _unproved(why, self.name, span)
                 self.edits |= found
         self._renamed = {old: new}
 
-    def _edited(self) -> dict[Path, str]:
-        """Return the texts of the open and the edited files, with the edits."""
-        texts = dict(self._texts)
-        for file in {edit.file for edit in self.edits}:
-            text = self._project.text(file, self._texts) or ""
-            for edit in sorted((edit for edit in self.edits if edit.file == file), reverse=True):
-                text = text[: edit.start] + edit.text + text[edit.end :]
-            texts[file] = text
-        return texts
-
-    def _pairs(self) -> Iterator[tuple[Path, Element, Element, str, str]]:
-        """Yield each description before and after the edits: the file, the root elements and the texts."""
-        for file in sorted({edit.file for edit in self.edits}):
-            if not self._project.contains(file):
-                why = phrase("'{file}' is outside of the workspace", file=display_path(str(file)))
-                raise _unproved(why, self._name)
-            if file.name.endswith(DESCRIPTIONS):
-                self._add_entries(file)
-        if not self._before:
-            reason = self._error.diagnostics[0].message if self._error else phrase("no description includes its file")
-            raise _unproved(phrase("no expansion can be compared: {reason}", reason=reason), self._name)
-        texts = self._edited()
-        for entry, values, root, text in self._before:
-            try:
-                given = {self._renamed.get(key, key): value for key, value in values.items()}
-                after = self._expand(entry, given, texts)
-            except LinkwrightError as error:
-                first = error.diagnostics[0]
-                raise _unproved(
-                    phrase("the new name causes this error: {why}", why=first.message), self._name, first.span
-                ) from None
-            yield entry, root, after.document.root, text, str(after)
+    def _pairs(self) -> Iterator[ExpansionPair]:
+        """Yield each description before and after the edits."""
+        return self._expansions.pairs(self.edits, self._renamed)
 
     def check_equal(self) -> None:
         """Compare the expansions, which must be equal.
 
         Raises:
-            LinkwrightError: LANG104, they differ.
+            UnprovedError: they differ.
         """
-        for entry, _, _, before, after in self._pairs():
-            if before != after:
-                raise _unproved(phrase("the robot of '{file}' would change", file=entry.name), self._name)
+        self._expansions.check_equal(self.edits, self._renamed)
 
     def follow(self) -> dict[str, str]:
         """Extend the edits until all references have their new names, and return the names that change.
@@ -264,9 +209,9 @@ class _Proof:
         """
         for _ in range(_MOST_ROUNDS):
             names: dict[tuple[NameKind, str], str] = {}
-            trees = [(before, after) for _, before, after, _, _ in self._pairs()]
+            trees = [(pair.before, pair.after) for pair in self._pairs()]
             for before, after in trees:
-                for kind, old, new in _changed_definitions(before, after, self._name):
+                for kind, old, new in _changed_definitions(before, after, self.name):
                     if names.setdefault((kind, old), new) != new:
                         message = phrase(
                             "'{old}' would have two new names, '{first}' and '{second}'",
@@ -274,16 +219,16 @@ class _Proof:
                             first=names[kind, old],
                             second=new,
                         )
-                        raise _unproved(message, self._name)
+                        raise _unproved(message, self.name)
             if not names:
-                raise _unproved(phrase("no link, joint or material takes its name from this place"), self._name)
+                raise _unproved(phrase("no link, joint or material takes its name from this place"), self.name)
             more = {edit for before, after in trees for edit in self._stale(before, after, names)}
             more |= self._elsewhere(names)
             if more <= self.edits:
                 self._check_names(trees, names)
                 return {old: new for (_, old), new in names.items()}
             self.edits |= more
-        raise _unproved(phrase("some references keep the old name"), self._name)
+        raise _unproved(phrase("some references keep the old name"), self.name)
 
     def _stale(self, before: Element, after: Element, names: Mapping[tuple[NameKind, str], str]) -> Iterator[Edit]:
         """Yield the edits for references in an expansion that still have an old name."""
@@ -303,14 +248,14 @@ class _Proof:
         place = attribute_value_range(source.text, element.offset, key) if key else _text_range(element)
         written = "" if place is None else source.text[place[0] : place[1]]
         file = real(source.name)
-        if place is not None and "$" in written and written == self._name.name:
-            return self._moved_edit(file, place, self._new)
+        if place is not None and "$" in written and written == self.name.name:
+            return self._moved_edit(file, place, self.new)
         argument = self._passed_value(element, written, value)
         if argument is not None:
             return self._moved_edit(*argument, wanted)
         if place is None or written != value:
             message = phrase("'{value}' is computed from '{written}'", value=value, written=written or element.tag)
-            raise _unproved(message, self._name, element.attribute_span(key) if key else element.span())
+            raise _unproved(message, self.name, element.attribute_span(key) if key else element.span())
         return self._moved_edit(file, place, wanted)
 
     def _passed_value(self, element: Element, written: str, value: str) -> tuple[Path, tuple[int, int]] | None:
@@ -347,12 +292,12 @@ class _Proof:
         olds = frozenset(old for _, old in names)
         found: set[Edit] = set()
         unchanged: list[Mention] = []
-        inside = {*self._project.index.related(self._name.file, self._texts)}
+        inside = {*self._project.index.related(self.name.file, self._texts)}
         for use in self._uses_in(inside, names):
             if not use.is_definition:
                 found.add(Edit(use.file, use.start, use.end, names[use.kind, use.name]))
-        others = {use.name for use in self._uses_in(self._project.neighbours(self._name.file, inside), names)}
-        for file in self._project.configuration_files(self._name.file):
+        others = {use.name for use in self._uses_in(self._project.neighbours(self.name.file, inside), names)}
+        for file in self._project.configuration_files(self.name.file):
             text = self._project.text(file, self._texts) or ""
             if ".srdf" in file.name:
                 uses = [use for use in occurrences_in(text, file) if (use.kind, use.name) in names]
@@ -361,7 +306,7 @@ class _Proof:
                 mentions = [*mentions_in(text, file, olds)]
             for mention in mentions:
                 new = next((names[kind, mention.name] for kind in mention.kinds if (kind, mention.name) in names), None)
-                if new is not None and mention.name not in others and file not in self._data:
+                if new is not None and mention.name not in others and file not in self._expansions.data:
                     found.add(Edit(file, mention.start, mention.end, new))
                 elif new is not None or not mention.kinds:
                     unchanged.append(mention)
@@ -380,13 +325,13 @@ class _Proof:
         allowed = {*((old, new) for (_, old), new in names.items())}
         for before, after in trees:
             olds, news = _defined(before), _defined(after)
-            for old, new in _differences(before, after, self._name):
+            for old, new in _differences(before, after, self.name):
                 if (old, new) not in allowed or (old in olds and new not in news):
-                    raise _unproved(phrase("'{old}' would become '{new}'", old=old, new=new), self._name)
+                    raise _unproved(phrase("'{old}' would become '{new}'", old=old, new=new), self.name)
             for kind in _OF_ROBOT[:2]:
                 defined = [element.attributes.get("name") for element in after.elements(kind.value)]
                 if len(defined) != len(set(defined)):
-                    raise _unproved(phrase("two {kind}s would have the same name", kind=term(kind.value)), self._name)
+                    raise _unproved(phrase("two {kind}s would have the same name", kind=term(kind.value)), self.name)
 
 
 def _call_range(text: str, span: Span) -> tuple[int, int]:

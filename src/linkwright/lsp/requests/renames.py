@@ -11,13 +11,15 @@ from pygls.exceptions import JsonRpcException
 
 from linkwright.diagnostics import LinkwrightError, joined, phrase
 from linkwright.diagnostics.translation import localized
+from linkwright.language.file_renaming import rename_file
 from linkwright.language.includes import real
 from linkwright.language.mentions import Mention
 from linkwright.language.occurrences import Occurrence
-from linkwright.language.renaming import Edit, occurrence_at, references, rename
+from linkwright.language.proof import Edit
+from linkwright.language.renaming import occurrence_at, references, rename
 from linkwright.language.uses import uses_at
 from linkwright.lsp.requests.names import target_locations
-from linkwright.lsp.server import LinkwrightServer
+from linkwright.lsp.server import LinkwrightServer, path_of
 
 
 def document_edits(server: LinkwrightServer, edits: Iterable[Edit]) -> types.WorkspaceEdit:
@@ -48,6 +50,19 @@ def _unchanged(server: LinkwrightServer, mentions: Iterable[Mention]) -> str:
     return localized(
         phrase("not renamed, because the file does not tell what is meant: {places}", places=joined(places))
     )
+
+
+def file_edits(server: LinkwrightServer, files: Iterable[types.FileRename]) -> tuple[list[Edit], list[Mention]]:
+    """Return the edits that keep references to renamed files valid, and the mentions that are not certain."""
+    edits: list[Edit] = []
+    unchanged: list[Mention] = []
+    for file in files:
+        old, new = path_of(file.old_uri), path_of(file.new_uri)
+        if server.project is not None and old is not None and new is not None and old.is_file():
+            renaming = rename_file(server.project, server.texts(), real(old), real(new))
+            edits += renaming.edits
+            unchanged += renaming.unchanged
+    return edits, unchanged
 
 
 def add_requests(server: LinkwrightServer) -> None:
@@ -110,3 +125,16 @@ def add_requests(server: LinkwrightServer) -> None:
             shown = types.ShowMessageParams(types.MessageType.Info, _unchanged(server, renaming.unchanged))
             server.window_show_message(shown)
         return document_edits(server, renaming.edits)
+
+    files = types.FileOperationFilter(types.FileOperationPattern("**/*"), "file")
+
+    @server.feature(types.WORKSPACE_WILL_RENAME_FILES, types.FileOperationRegistrationOptions([files]))
+    async def will_rename_files(server: LinkwrightServer, asked: types.RenameFilesParams) -> types.WorkspaceEdit | None:
+        await server.when_indexed()
+        texts = server.texts()
+        edits, unchanged = await server.in_thread(lambda: file_edits(server, asked.files))
+        if server.texts() != texts:  # the editor renames the file without edits
+            return None
+        if unchanged:
+            server.window_show_message(types.ShowMessageParams(types.MessageType.Info, _unchanged(server, unchanged)))
+        return document_edits(server, edits) if edits else None
