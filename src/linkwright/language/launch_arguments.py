@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from linkwright.language.python_text import Group, Item, Name, Operator, Part, PythonText, Text
+from linkwright.language.python_text import Group, Item, Name, Operator, Part, PythonText, Text, python_text
 from linkwright.xmltree.tokens import Kind, Token, tokens
 
 _DECLARATIONS = ("DeclareLaunchArgument", "DeclareBooleanLaunchArgument")
@@ -140,7 +140,7 @@ def _of_tag(token: Token, choices: list[str], file: Path) -> Iterator[LaunchArgu
 
 
 def _in_python(text: str, file: Path) -> Iterator[LaunchArgument]:
-    python = PythonText(text)
+    python = python_text(text)
     for call in python.calls_of(*_DECLARATIONS):
         name = call.argument("name", 0)
         literal = _literal(name)
