@@ -52,3 +52,9 @@ def test_symbols_are_the_fields_of_each_part(at):
     place = at("|int32 a\n---\nint32 B=3\nstring<=5 c", "srv/Set.srv")
     found = [(part.name, [child.name for child in part.children]) for part in place.format.symbols(place.document)]
     assert found == [("Request", ["a"]), ("Response", ["B", "c"])]
+
+
+def test_types_that_the_package_uses_come_first(at):
+    place = at("geometry_msgs/|")
+    (place.document.file.parent / "Arm.msg").write_text("geometry_msgs/Wrench force\n")
+    assert place.labels()[0] == "geometry_msgs/Wrench"

@@ -138,3 +138,9 @@ def test_a_value_is_explained_by_its_argument(at):
     assert "Its colour" in at(INCLUDE.format("{'colour': 're|d'}.items()")).hover()
     assert at("Node(name='ab|c')").hover() == "`name`: the name to give to the node."
     assert at("Node(package='nowh|ere')").hover() == "package 'nowhere' not found"
+
+
+def test_a_default_in_a_variable_is_resolved():
+    text = "x = LaunchConfiguration('a', default='false')\ny = 'b.yaml'\n"
+    text += "DeclareLaunchArgument('a', default_value=x)\nDeclareLaunchArgument('b', default_value=y)\n"
+    assert [argument.default for argument in arguments_in(text, Path("a.py"))] == ["false", "b.yaml"]

@@ -22,6 +22,13 @@ def test_dependencies_are_packages_that_are_not_declared_yet(at):
     assert at("<test_depend>\n    ament_l|</test_depend>").labels()[0] == "ament_lint_auto"
 
 
+def test_packages_that_launch_files_use_come_first(at):
+    place = at("<exec_depend>|</exec_depend>")
+    launch = place.document.file.parent / "launch" / "a.launch.xml"
+    launch.write_text('<launch><node pkg="lamp_nodes" exec="blink"/><node pkg="rviz2" exec="rviz2"/></launch>')
+    assert set(place.labels()[:2]) == {"lamp_nodes", "rviz2"}
+
+
 def test_texts_and_attributes_have_their_values(at):
     assert at("<export><build_type>|</build_type></export>").labels()[:2] == ["ament_cmake", "ament_python"]
     assert at("<license>|</license>").labels()[0] == "Apache-2.0"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -26,7 +27,13 @@ _FIELD = re.compile(
 )
 _SEPARATOR = re.compile(r"^---[ \t]*\r?$", re.MULTILINE)
 _USUAL = ("float64", "int32", "string", "bool", "uint8", "float32", "int64", "uint32")
-_USUAL_TYPES = ("std_msgs/Header", "builtin_interfaces/Time", "builtin_interfaces/Duration")
+_USUAL_TYPES = (
+    *("std_msgs/Header", "builtin_interfaces/Time", "builtin_interfaces/Duration"),
+    *("geometry_msgs/PoseStamped", "geometry_msgs/Pose", "geometry_msgs/Point", "geometry_msgs/Twist"),
+    *("geometry_msgs/Vector3", "geometry_msgs/Quaternion", "geometry_msgs/Transform", "nav_msgs/Path"),
+    *("sensor_msgs/Image", "sensor_msgs/PointCloud2", "sensor_msgs/LaserScan"),
+)
+_MAX_NEIGHBOURS = 100
 _USUAL_PACKAGES = ("std_msgs", "geometry_msgs", "sensor_msgs", "builtin_interfaces", "nav_msgs")
 
 
@@ -93,21 +100,40 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
 def _offer_types(document: Document, typed: str, start: int) -> Iterator[Completion]:
     own = _own_package(document)
     package, slash, _ = typed.partition("/")
+    likely = [*dict.fromkeys((*_used_types(document, start), *_USUAL_TYPES))]
     if slash:
-        for name in _names_in(document, package):
-            yield Completion(f"{package}/{name}", ItemKind.NAME, start)
+        names = [f"{package}/{name}" for name in _names_in(document, package)]
+        ranks = {name: number for number, name in enumerate(likely)}
+        for name in sorted(names, key=lambda name: (ranks.get(name, len(ranks)), name)):
+            yield Completion(name, ItemKind.NAME, start)
         return
     for primitive in (*_USUAL, *(name for name in PRIMITIVES if name not in _USUAL)):
         yield Completion(primitive, ItemKind.VALUE, start, PRIMITIVES[primitive].idl_name)
     for name in _names_in(document, own):
         if name != document.file.stem or document.file.suffix != ".msg":
             yield Completion(name, ItemKind.NAME, start, own)
-    for name in _USUAL_TYPES:
+    for name in likely:
         yield Completion(name, ItemKind.NAME, start)
     for package in dict.fromkeys((*_USUAL_PACKAGES, *sorted({*catalogue.packages(), *document.finder.packages()}))):
         for name in _names_in(document, package) if package != own else ():
-            if f"{package}/{name}" not in _USUAL_TYPES:
+            if f"{package}/{name}" not in likely:
                 yield Completion(f"{package}/{name}", ItemKind.NAME, start)
+
+
+def _used_types(document: Document, apart: int) -> list[str]:
+    """Return the types of other packages that the interface files of the package use, the most used first.
+
+    Args:
+        document: the text.
+        apart: the offset of a type that does not count.
+    """
+    found: Counter[str] = Counter()
+    files = sorted(document.file.parent.glob(f"*{document.file.suffix}"))[:_MAX_NEIGHBOURS]
+    for file in dict.fromkeys((document.file, *files)):
+        text = document.text if file == document.file else document.other(file)
+        lines = (line for line in _FIELD.finditer(text) if file != document.file or line.start("type") != apart)
+        found.update(line["type"] for line in lines if line["type"] and line["name"] and "/" in line["type"])
+    return [name for name, _ in found.most_common()]
 
 
 def _names_in(document: Document, package: str) -> list[str]:

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from linkwright.language.python_text import Group, Item, Name, Operator, Part, PythonText, Text
+from linkwright.language.python_text import Group, Item, Name, Operator, Part, PythonText, Text, python_text
 from linkwright.xmltree.tokens import Kind, Token, tokens
 
 _DECLARATIONS = ("DeclareLaunchArgument", "DeclareBooleanLaunchArgument")
@@ -140,12 +140,12 @@ def _of_tag(token: Token, choices: list[str], file: Path) -> Iterator[LaunchArgu
 
 
 def _in_python(text: str, file: Path) -> Iterator[LaunchArgument]:
-    python = PythonText(text)
+    python = python_text(text)
     for call in python.calls_of(*_DECLARATIONS):
         name = call.argument("name", 0)
         literal = _literal(name)
         default, description = call.argument("default_value"), call.argument("description")
-        written = None if default is None else _written(default, text)
+        written = None if default is None else _written(_resolved(python, default), text)
         told = "".join(part.value for part in description.parts if isinstance(part, Text)) if description else ""
         if literal is not None and literal.value:
             choices = _literals(call.argument("choices")) if call.function == _DECLARATIONS[0] else ("true", "false")
@@ -207,6 +207,20 @@ def _literals(item: Item | None) -> tuple[str, ...]:
     if not isinstance(part, Group):
         return ()
     return tuple(text.value for inner in part.items if (text := _literal(inner)) is not None)
+
+
+def _resolved(python: PythonText, item: Item) -> Item:
+    """Return the default behind a variable: its text, or the default of the launch configuration in it."""
+    for _ in range(2):
+        part = item.parts[0] if len(item.parts) == 1 else None
+        bound = python.bindings.get(part.value) if isinstance(part, Name) else None
+        inner = bound.parts[0] if bound is not None and len(bound.parts) == 1 else part
+        default = inner.argument("default", 1) if isinstance(inner, Group) else None
+        if isinstance(inner, Group) and inner.function == "LaunchConfiguration" and default is not None:
+            item = default
+        elif bound is not None and isinstance(inner, Text):
+            item = bound
+    return item
 
 
 def _written(item: Item, text: str) -> str:

@@ -30,7 +30,7 @@ from linkwright.language.offers import (
     target_of_program,
 )
 from linkwright.language.python_paths import JOINS, PACKAGE_FUNCTIONS, PythonPaths, Value
-from linkwright.language.python_text import Group, Item, Name, PythonText, Text
+from linkwright.language.python_text import Group, Item, Name, Text, python_text
 from linkwright.packages.share_layout import source_of
 
 _PACKAGE_KEYWORDS = frozenset({"package", "package_name", "node_package"})
@@ -74,7 +74,7 @@ class _LaunchText:
 
     def __init__(self, document: Document) -> None:
         self.document = document
-        self.python = PythonText(document.text)
+        self.python = python_text(document.text)
         texts = {each.name: each.default for each in self.arguments if each.default and "(" not in each.default}
         self.paths = PythonPaths(self.python, document.file, document.finder, texts)
 

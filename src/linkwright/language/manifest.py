@@ -15,6 +15,7 @@ from linkwright.language.links import FileReference
 from linkwright.language.manifest_schema import DEPENDING, PACKAGE
 from linkwright.language.offers import explain_package, offer_packages, offer_values, target_of_package
 from linkwright.language.outline import Outline
+from linkwright.language.programs import used_packages
 from linkwright.packages.creation.licenses import known_licenses
 from linkwright.packages.manifest import MANIFEST
 
@@ -91,10 +92,14 @@ def _texts(document: Document, tag: str, start: int) -> Iterator[Completion]:
 
 
 def _dependencies(document: Document, tag: str, start: int) -> Iterator[Completion]:
-    """Yield packages: the usual ones of the tag, then those that are found; declared ones are left out."""
+    """Yield packages: those that launch files and descriptions use, the usual ones of the tag, and the found ones.
+
+    Declared packages are left out.
+    """
     others = document.text[:start] + document.text[start:].partition("<")[2]
     seen = {name for other, name in _DECLARED.findall(others) if other in (tag, "depend", "name")}
-    usual: Iterable[str] = _USUAL.get(tag, ())
+    used = used_packages(document.file.parent) if tag in ("depend", "exec_depend") else []
+    usual: Iterable[str] = (*used, *_USUAL.get(tag, ()))
     for name in usual:
         if name not in seen:
             seen.add(name)

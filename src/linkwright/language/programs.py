@@ -4,18 +4,28 @@ from __future__ import annotations
 
 import os
 import re
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from linkwright.language.format import Target
 from linkwright.launch.ros.executables import builtin_packages, hosted_executables
+from linkwright.lint.targets import walk
 from linkwright.nodes import COMPONENTS
 from linkwright.packages import PackageFinder, enclosing_package, install_prefix, is_installed
 from linkwright.packages.programs.source_programs import module_file, python_root, source_programs
 from linkwright.packages.readers.entry_points import EntryPoint, text_of
 from linkwright.packages.share_layout import source_of, substituted_executables
 
+_PACKAGE_USE = re.compile(
+    r"""\$\(find(?:-pkg-share|-pkg-prefix)?\s+([a-z]\w+)\)|package://([a-z]\w+)/|\bpkg\s*[=:]\s*["']?([a-z]\w+)"""
+    r"""|\bpackage\s*=\s*["']([a-z]\w+)["']"""
+    r"""|(?:get_package_share_\w+|FindPackageShare)\(\s*["']([a-z]\w+)["']"""
+)
+_USING = (".launch.py", "_launch.py", ".launch.xml", ".launch.yaml", ".xacro", ".urdf", ".sdf", ".world", ".rviz")
+_MAX_FILES = 200
+_MAX_BYTES = 300_000
 _REGISTERED = re.compile(r"(?i)\brclcpp_components_register_nodes?\s*\(([^)]*)\)")
 _CLASS = re.compile(r"\b[A-Za-z_]\w*(?:::\w+)+")
 _DEPENDENCY = re.compile(r"<(?:exec_|run_)?depend\b[^<>]*>\s*([a-z]\w*)\s*<")
@@ -34,6 +44,19 @@ class Program:
     name: str
     origin: str
     target: Target | None = None
+
+
+def used_packages(folder: Path) -> list[str]:
+    """Return the packages that the launch files and descriptions of a package use, the most used first."""
+    files, _ = walk(folder, _USING)
+    found: Counter[str] = Counter()
+    for file in files[:_MAX_FILES]:
+        try:
+            text = file.read_text(encoding="utf-8", errors="replace") if file.stat().st_size < _MAX_BYTES else ""
+        except OSError:
+            continue
+        found.update({name for use in _PACKAGE_USE.finditer(text) for name in use.groups() if name})
+    return [name for name, _ in found.most_common()]
 
 
 def package_names(finder: PackageFinder, file: Path) -> list[str]:

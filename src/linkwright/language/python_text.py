@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Union
 
 from linkwright.loading.deferred import lazy_pattern
@@ -28,7 +29,7 @@ _TOKEN = lazy_pattern(
 _STATEMENT = frozenset({"def", "class", "return", "import", "from", "with", "try", "while", "raise", "del"})
 """Words that begin a statement, and so cannot begin a line inside brackets."""
 _CLOSING = {"(": ")", "[": "]", "{": "}", "": ""}
-_MOST_TEXT = 1_000_000
+_MOST_TEXT = 300_000
 """Characters; longer files have no launch description."""
 
 
@@ -259,3 +260,9 @@ class PythonText:
     def _close_all(self, end: int) -> None:
         while self._group is not self.root:
             self._leave(end)
+
+
+@lru_cache(maxsize=16)
+def python_text(text: str) -> PythonText:
+    """Return the calls and strings of a text, which several requests share; they must not be changed."""
+    return PythonText(text)
