@@ -14,8 +14,9 @@ import math
 import re
 import sys
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager, redirect_stderr, redirect_stdout, suppress
 from importlib import import_module
+from io import StringIO
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -284,7 +285,8 @@ async def _table() -> str:
 
 def main(words: list[str]) -> int:
     """Write the table, or check it; returns the exit status."""
-    text = asyncio.run(_table())
+    with redirect_stderr(StringIO()), redirect_stdout(StringIO()):  # the logs of the nodes
+        text = asyncio.run(_table())
     if words == ["--check"]:
         if LIST.read_text(encoding="utf-8") == text:
             return 0
