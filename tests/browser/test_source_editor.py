@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.browser.axe import violations
 from tests.browser.conftest import becomes, until
 from tests.browser.test_description import open_panel
 
@@ -161,3 +162,18 @@ def test_a_file_is_created_in_the_tree_and_the_keyboard_leaves_the_editor(start,
     text.press("Escape")
     text.press("Tab")
     page.wait_for_function("!document.activeElement.closest('.cm-editor')")
+
+
+def test_the_editor_is_accessible(start, open_page, file):
+    page = open_page(start("view", str(file)))
+    text = open_editor(page)
+    page.get_by_role("button", name="Files", exact=True).click()
+    go_to(text, 3)
+    text.press("End")
+    page.keyboard.insert_text('<link name="${nam}"/>')
+    until(page, f"{EDITOR}.findings.includes('XAC201')")
+    page.locator(".editor-bar").get_by_role("button", name="1 finding").click()
+    text.press("Control+f")
+    page.locator(".cm-search").wait_for()
+    assert violations(page, ".source-panel") == []
+    assert page.evaluate("document.body.scrollHeight <= document.body.clientHeight")

@@ -42,7 +42,7 @@ export function baseExtensions(path: string, text: string, isReadOnly: boolean):
     indentUnit.of(indentation(text)),
     EditorState.phrases.of(phrases),
     EditorState.readOnly.of(isReadOnly),
-    EditorView.contentAttributes.of({ "aria-label": label, "aria-description": words.keys }),
+    EditorView.contentAttributes.of({ "aria-label": label, "aria-description": words.keys, tabindex: "0" }),
     tooltips({ parent: document.body }), // the dock cuts what is outside of a panel
     markedLines,
     pageTheme,

@@ -1,7 +1,7 @@
 import { setDiagnostics, type Diagnostic } from "@codemirror/lint";
 import type { EditorState, TransactionSpec } from "@codemirror/state";
 import type { ServerFinding } from "./language-service";
-import { positionIn } from "./rename";
+import { positionIn } from "./server-places";
 
 const SEVERITIES = ["error", "error", "warning", "info", "hint"] as const;
 

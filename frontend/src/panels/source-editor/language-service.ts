@@ -4,6 +4,8 @@ import { ChangeSet, type Extension, type Text, type TransactionSpec } from "@cod
 import { EditorView, keymap, ViewPlugin, type ViewUpdate } from "@codemirror/view";
 import type { Connection } from "../../connection/connection";
 import { languageId } from "./languages";
+import { fitsMessage } from "./message-size";
+import { pathOf, type ServerRange } from "./server-places";
 import { safeHtml } from "./safe-html";
 import type { SourceDocument } from "./source-document";
 
@@ -13,10 +15,6 @@ export interface ServerFinding {
   readonly severity?: number;
   readonly code?: number | string;
   readonly message: string;
-}
-export interface ServerRange {
-  readonly start: { line: number; character: number };
-  readonly end: { line: number; character: number };
 }
 
 /** The documents of the editor, for the language server. */
@@ -165,7 +163,8 @@ export class LanguageService {
       file.unsynced = ChangeSet.empty(file.doc.length);
     }
     client.connect({
-      send: (content) => connection.send({ type: "ask_language_server", content }),
+      // Without the text of such a file, the server reads it from the disk.
+      send: (content) => fitsMessage(content) && connection.send({ type: "ask_language_server", content }),
       subscribe: (handler) => (this.receive = handler),
       unsubscribe: () => (this.receive = () => undefined),
     });
@@ -217,11 +216,4 @@ class Synchronizer {
   destroy(): void {
     clearTimeout(this.timer);
   }
-}
-
-/** Returns the path of a file's URI; null for other URIs. */
-export function pathOf(uri: string): string | null {
-  if (!uri.startsWith("file:///")) return null;
-  const path = decodeURIComponent(uri.slice("file://".length));
-  return /^\/[A-Za-z]:/.test(path) ? path.slice(1) : path;
 }

@@ -1,10 +1,9 @@
 import type { LSPClient } from "@codemirror/lsp-client";
 import { LSPPlugin } from "@codemirror/lsp-client";
-import type { Text } from "@codemirror/state";
 import { showDialog, type EditorView } from "@codemirror/view";
 import { strings } from "../../strings";
-import type { Documents, ServerRange } from "./language-service";
-import { pathOf } from "./language-service";
+import type { Documents } from "./language-service";
+import { pathOf, positionIn, type ServerRange } from "./server-places";
 import type { SourceDocument } from "./source-document";
 
 interface TextEdit {
@@ -14,13 +13,6 @@ interface TextEdit {
 interface WorkspaceEdit {
   readonly changes?: Readonly<Record<string, readonly TextEdit[]>> | null;
   readonly documentChanges?: readonly { textDocument: { uri: string }; edits: readonly TextEdit[] }[] | null;
-}
-
-/** Returns the position of a place in a text; one beyond the text is its end. */
-export function positionIn(text: Text, { line, character }: ServerRange["start"]): number {
-  if (line >= text.lines) return text.length;
-  const found = text.line(line + 1);
-  return Math.min(found.from + character, found.to);
 }
 
 /** Asks for a new name for the symbol at the cursor, and renames the symbol in all files, which are not saved yet. */

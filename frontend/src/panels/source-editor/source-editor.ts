@@ -15,12 +15,11 @@ import { FileTree } from "./file-tree";
 import { showFindings } from "./findings";
 import { LanguageService, type Documents, type ServerFinding } from "./language-service";
 import { inspectMarks, marksOf } from "./marks";
+import { fitsMessage } from "./message-size";
 import { renameAtCursor } from "./rename";
 import { SourceDocument } from "./source-document";
 import "../../styles/source-editor.css";
 
-/** Characters of a message with a text; the server ends connections that send much longer ones. */
-const LONGEST_MESSAGE = 900_000;
 const RESTARTS = 3;
 const RESTART_MS = 1000;
 
@@ -59,7 +58,7 @@ export class SourceEditor implements Documents {
     const { connection } = session;
     this.service = new LanguageService(connection, this);
     this.save = button(words.saveHint, () => this.saveAll(), "tool framed", icon("save"), words.save);
-    this.list = button(words.findingsHint, () => openLintPanel(this.view), "tool framed");
+    this.list = button(words.findingsHint, () => openLintPanel(this.view), "tool framed", words.findings(0));
     this.tree = new FileTree(connection, (path) => void this.show(path), (path) => this.create(path));
     const files = button(words.filesHint, () => this.tree.toggle(), "tool framed", icon("tree"), words.files);
     const format = button(words.formatHint, () => formatDocument(this.view), "tool framed", words.format);
@@ -138,7 +137,7 @@ export class SourceEditor implements Documents {
     for (const document of this.unsaved) {
       if (document.conflict !== null || document.isWriting) continue;
       const text = document.beginWriting();
-      if (JSON.stringify(text).length > LONGEST_MESSAGE) {
+      if (!fitsMessage(text)) {
         document.endWriting(null);
         this.tell(words.tooLong(nameOf(document.path)));
         continue;
@@ -209,6 +208,7 @@ export class SourceEditor implements Documents {
     if (this.isOpen) {
       this.service.connect(uri);
       this.tree.setFolder(folder);
+      this.status.textContent = "";
       for (const path of [...this.documents.keys(), ...this.awaited.keys()]) this.session.connection.send({ type: "ask_source_file", path });
     } else for (const path of [...this.awaited.keys()]) this.settle(path, null);
     this.changed.emit();

@@ -5,7 +5,8 @@ import { tags } from "@lezer/highlight";
 
 /** The page's colours; they are variables, so that the editor follows the theme by itself. */
 const colors = EditorView.theme({
-  "&": { height: "100%", background: "var(--bg-field)", color: "var(--text)", fontSize: "12px" },
+  // Not `&` alone: the box of the tooltips, which is in the page's body, has the class of the theme, too.
+  "&.cm-editor": { height: "100%", background: "var(--bg-field)", color: "var(--text)", fontSize: "12px" },
   "&.cm-focused": { outline: "none" },
   ".cm-scroller": { fontFamily: "var(--mono)", lineHeight: "18px" },
   ".cm-content": { caretColor: "var(--text)" },
@@ -43,6 +44,11 @@ const colors = EditorView.theme({
   ".cm-tooltip.cm-completionInfo": { whiteSpace: "normal" },
   ".cm-completionDetail": { color: "var(--text-soft)", fontStyle: "normal" },
   ".cm-completionMatchedText": { textDecoration: "none", fontWeight: "600" },
+  ".cm-lintRange": { backgroundImage: "none !important", textDecoration: "underline wavy 1px", textUnderlineOffset: "3px" },
+  ".cm-lintRange-active": { backgroundColor: "var(--accent-wash)" },
+  ".cm-lintRange-error": { textDecorationColor: "var(--error)" },
+  ".cm-lintRange-warning": { textDecorationColor: "var(--warn)" },
+  ".cm-lintRange-info, .cm-lintRange-hint": { textDecorationColor: "var(--accent)" },
   ".cm-diagnostic": { whiteSpace: "pre-wrap", padding: "4px 8px" },
   ".cm-diagnostic-error": { borderLeft: "4px solid var(--error)" },
   ".cm-diagnostic-warning": { borderLeft: "4px solid var(--warn)" },
