@@ -9,6 +9,7 @@ import pytest
 from tests.browser.axe import violations
 from tests.browser.conftest import becomes, until
 from tests.browser.test_description import open_panel
+from tests.browser.test_editing import edited, number, type_in
 
 pytestmark = pytest.mark.browser
 
@@ -104,6 +105,30 @@ def test_a_change_on_the_disk_is_merged_or_told_and_nothing_is_lost(start, open_
     shows(page, "<!-- mine -->")
     text.press("Control+s")
     becomes(file.read_text, ROBOT.replace("0.2", "0.3").replace('wiki/xacro">', 'wiki/xacro"><!-- mine -->'))
+
+
+def test_an_edit_of_the_robot_and_a_saved_text_have_one_history(start, open_page, file):
+    page = open_page(start("view", str(file)))
+    text = open_editor(page)
+    edited(page, "left")
+    becomes(lambda: number(page, "xyz2").input_value(), "0")
+    type_in(page, "xyz2", "0.4")
+    page.get_by_role("button", name="Write", exact=True).click()
+    leg = file.parent / "leg.xacro"
+    becomes(lambda: "0.4" in leg.read_text(), True)
+    page.locator(".panel-tab", has_text="Source").first.click()
+    shows(page, "0.4")
+    text.click()
+    text.press("Control+z")
+    text.press("Control+s")
+    becomes(leg.read_text, LEG)
+
+    page.locator(".panel-tab", has_text="Edit robot").first.click()
+    undo = page.get_by_role("button", name="Undo the last written edit")
+    undo.click()
+    becomes(lambda: "0.4" in leg.read_text(), True)
+    undo.click()
+    becomes(leg.read_text, LEG)
 
 
 def test_findings_completion_hover_definition_and_rename(start, open_page, file):
