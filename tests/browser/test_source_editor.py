@@ -51,7 +51,7 @@ def open_editor(page):
     page.get_by_role("button", name="Edit", exact=True).click()
     until(page, f"{EDITOR}.file?.endsWith('robot.urdf.xacro')")
     text = page.locator(".cm-content")
-    text.click()
+    text.click(position={"x": 30, "y": 8})
     text.press("Control+Home")
     return text
 
@@ -118,7 +118,7 @@ def test_an_edit_of_the_robot_and_a_saved_text_have_one_history(start, open_page
     becomes(lambda: "0.4" in leg.read_text(), True)
     page.locator(".panel-tab", has_text="Source").first.click()
     shows(page, "0.4")
-    text.click()
+    text.click(position={"x": 30, "y": 8})
     text.press("Control+z")
     text.press("Control+s")
     becomes(leg.read_text, LEG)
@@ -177,7 +177,7 @@ def test_a_file_is_created_in_the_tree_and_the_keyboard_leaves_the_editor(start,
     name.press("Enter")
     until(page, f"{EDITOR}.file.endsWith('config/legs.yaml')")
     page.get_by_role("treeitem", name="legs.yaml").wait_for()
-    text.click()
+    text.click(position={"x": 30, "y": 8})
     page.keyboard.insert_text("legs: 2\n")
     text.press("Control+s")
     becomes((file.parent / "config" / "legs.yaml").read_text, "legs: 2\n")
