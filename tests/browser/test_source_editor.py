@@ -9,7 +9,7 @@ import pytest
 from tests.browser.axe import violations
 from tests.browser.conftest import becomes, until
 from tests.browser.test_description import open_panel
-from tests.browser.test_editing import edited, number, type_in
+from tests.browser.test_editing import number, type_in
 
 pytestmark = pytest.mark.browser
 
@@ -110,7 +110,9 @@ def test_a_change_on_the_disk_is_merged_or_told_and_nothing_is_lost(start, open_
 def test_an_edit_of_the_robot_and_a_saved_text_have_one_history(start, open_page, file):
     page = open_page(start("view", str(file)))
     text = open_editor(page)
-    edited(page, "left")
+    page.get_by_role("tab", name="Links").click()
+    page.get_by_text("left", exact=True).locator("visible=true").first.click()
+    page.get_by_role("button", name="Move and rotate the joint").click()
     becomes(lambda: number(page, "xyz2").input_value(), "0")
     type_in(page, "xyz2", "0.4")
     page.get_by_role("button", name="Write", exact=True).click()

@@ -36,6 +36,24 @@ const TIMEOUT_MS = 20_000;
 /** Changes are sent this time after the last key, ms. */
 const SYNC_MS = 120;
 
+/** Of the protocol: the request was cancelled, or its text has changed meanwhile. */
+const OUTDATED: readonly unknown[] = [-32800, -32801];
+/** Requests that the next key or movement of the mouse repeats. */
+const REPEATED = ["textDocument/completion", "textDocument/hover"];
+
+/** A client for which an outdated answer is none, and no error. */
+class PatientClient extends LSPClient {
+  // eslint-disable-next-line @typescript-eslint/no-unnecessary-type-parameters -- the type of the overridden method
+  override request<Params, Result>(method: string, params: Params): Promise<Result> {
+    const answer = super.request<Params, Result>(method, params);
+    if (!REPEATED.includes(method)) return answer;
+    return answer.catch((error: unknown) => {
+      if (typeof error === "object" && error !== null && "code" in error && OUTDATED.includes(error.code)) return null as Result;
+      throw error;
+    });
+  }
+}
+
 class DocumentFile implements WorkspaceFile {
   version = 0;
   doc: Text;
@@ -147,7 +165,7 @@ export class LanguageService {
       },
       extensions: [{ clientCapabilities: { textDocument: { publishDiagnostics: { versionSupport: true, codeDescriptionSupport: true } } } }],
     };
-    this.client = new LSPClient(this.config);
+    this.client = new PatientClient(this.config);
     if (workspace === undefined) throw new Error("the client has made no workspace");
     this.workspace = workspace;
     connection.on("language_server_answer", ({ content }) => this.receive(content));
