@@ -123,9 +123,14 @@ def test_the_bill_has_packages_of_python_and_of_the_page(bill):
     }
     components = {component["name"]: component for component in whole["components"]}
     wanted = json.loads((REPOSITORY / "frontend" / "package.json").read_text(encoding="utf-8"))["dependencies"]
-    assert set(components) == {"numpy", "dockview-core", *wanted}
+    locked = json.loads((REPOSITORY / "frontend" / "package-lock.json").read_text(encoding="utf-8"))["packages"]
+    bundled = {
+        path.removeprefix("node_modules/") for path, package in locked.items() if path and not package.get("dev")
+    }
+    assert bundled >= {"dockview-core", "@lezer/common", *wanted}
+    assert set(components) == {"numpy", *bundled}
     for name, version in wanted.items():
-        assert components[name]["purl"] == f"pkg:npm/{name}@{version}"
+        assert components[name]["purl"] == f"pkg:npm/{name.replace('@', '%40')}@{version}"
         assert components[name]["licenses"][0]["license"]["id"] == "MIT"
         (digest,) = components[name]["hashes"]
         assert digest["alg"] == "SHA-512"

@@ -104,7 +104,7 @@ def licences() -> str:
     """
     texts = []
     for name, package in bundled().items():
-        files = sorted((FRONTEND / _INSTALLED / name).glob("LICEN[CS]E*"))
+        files = sorted((FRONTEND / _INSTALLED / name).glob("[Ll][Ii][Cc][Ee][Nn][CcSs][Ee]*"))
         if not files:
             raise SystemExit(f"the npm package {name} comes without the text of its licence ({package['license']})")
         text = files[0].read_text(encoding="utf-8").strip()

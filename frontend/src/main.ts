@@ -275,7 +275,7 @@ function bindFileKeys(session: Session, files: FileCommands): void {
   const onKeyDown = (event: KeyboardEvent): void => {
     const target = event.target instanceof Element ? event.target : null;
     const found = keys.find(({ shortcut }) => matches(event, shortcut));
-    if (!found || target?.closest("dialog")) return;
+    if (!found || target?.closest("dialog, .source-editor")) return;
     if (found.text === true && target?.matches("input[type=text], textarea")) return;
     event.preventDefault();
     event.stopPropagation();

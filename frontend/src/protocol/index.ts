@@ -132,6 +132,21 @@ import type {
   UngroupEntity,
 } from "./simulation";
 import type {
+  AskLanguageServer,
+  AskSourceFile,
+  AskSourceFolder,
+  CreateSourceFile,
+  EditorOpened,
+  LanguageServerAnswer,
+  LanguageServerEnded,
+  LeaveSourceFile,
+  OpenEditor,
+  SourceFile,
+  SourceFileWritten,
+  SourceFolder,
+  WriteSourceFile,
+} from "./source-editor";
+import type {
   Clock,
   GoLive,
   HistoryExtent,
@@ -198,6 +213,7 @@ export * from "./navigation";
 export * from "./points";
 export * from "./robot";
 export * from "./simulation";
+export * from "./source-editor";
 export * from "./time";
 export * from "./views-and-tools";
 export * from "./voice";
@@ -225,6 +241,7 @@ export type ServerMessage =
   | EditPreview
   | EditWritten
   | EditableParts
+  | EditorOpened
   | ExportFailed
   | ExportReady
   | Folder
@@ -235,6 +252,8 @@ export type ServerMessage =
   | InertiaFindings
   | JointPositions
   | Joints
+  | LanguageServerAnswer
+  | LanguageServerEnded
   | LinkProvenance
   | LogLines
   | ModelAdded
@@ -257,6 +276,9 @@ export type ServerMessage =
   | SeriesStates
   | SimulationNotice
   | SimulationStatus
+  | SourceFile
+  | SourceFileWritten
+  | SourceFolder
   | TakeJudged
   | TeleopState
   | TimeReset
@@ -291,9 +313,12 @@ export type PageMessage =
   | AskFields
   | AskFolder
   | AskInertia
+  | AskLanguageServer
   | AskModels
   | AskPoint
   | AskProvenance
+  | AskSourceFile
+  | AskSourceFolder
   | AskWordsFile
   | BeginTake
   | CenterJoints
@@ -302,6 +327,7 @@ export type PageMessage =
   | CommandNavigation
   | ControlSimulation
   | CopyEntities
+  | CreateSourceFile
   | DeleteEntities
   | DeleteModel
   | DragModel
@@ -315,12 +341,14 @@ export type PageMessage =
   | GroupEntities
   | ImageSize
   | ImportWords
+  | LeaveSourceFile
   | LoadConfiguration
   | MarkerFeedback
   | MeshStatus
   | MoveDisplays
   | NewConfiguration
   | OpenConfiguration
+  | OpenEditor
   | Play
   | PointChosen
   | PoseChosen
@@ -373,7 +401,8 @@ export type PageMessage =
   | WatchSeries
   | WatchTopics
   | WatchVoice
-  | WatchWords;
+  | WatchWords
+  | WriteSourceFile;
 
 export type DataContent =
   | CellGrid

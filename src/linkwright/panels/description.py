@@ -191,6 +191,11 @@ class DescriptionFeature(PageFeature):
             if diagnostic.source is not None
         }
 
+    def files(self, page: Page) -> list[str]:
+        """Return the files of the descriptions that a page shows, and those with findings."""
+        models = self.managers.of(page).robot_models()
+        return [*(str(path) for model in models for path in self.context.library.files(model.text)), *self._faulty]
+
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
         """Return the revision of each description that pages can request."""
         known = [self._look_at(display) for display in manager.robot_models()]

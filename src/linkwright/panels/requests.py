@@ -6,6 +6,7 @@ from linkwright.panels.page_feature import OnDemand, messages
 _EDITING = "linkwright.page.protocol.editing"
 _MONITOR = "linkwright.page.protocol.monitor"
 _RECORDING = "linkwright.page.protocol.time"
+_SOURCES = "linkwright.page.protocol.source_editor"
 
 ON_DEMAND = (
     OnDemand(
@@ -32,6 +33,19 @@ ON_DEMAND = (
     OnDemand("linkwright.panels.monitor.plots:PlotsFeature", messages(_MONITOR, "AskFields", "WatchSeries")),
     OnDemand("linkwright.panels.monitor.teleop:TeleopFeature", messages(_MONITOR, "AimTeleop", "Drive")),
     OnDemand("linkwright.panels.monitor.topics:TopicsFeature", messages(_MONITOR, "WatchTopics")),
+    OnDemand(
+        "linkwright.panels.source_editor.feature:SourceEditorFeature",
+        messages(
+            _SOURCES,
+            "AskLanguageServer",
+            "AskSourceFile",
+            "AskSourceFolder",
+            "CreateSourceFile",
+            "LeaveSourceFile",
+            "OpenEditor",
+            "WriteSourceFile",
+        ),
+    ),
     OnDemand(
         "linkwright.panels.recording:RecordingFeature",
         messages(_RECORDING, "RecordTopics", "StopRecording", "SaveMinutes"),

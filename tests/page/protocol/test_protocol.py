@@ -43,7 +43,7 @@ def test_a_file_of_types_imports_what_others_declare():
     assert "  inertia: LinkInertia | null;" in files["robot.ts"]
     assert "export interface LinkInertia {" in files["description.ts"]
     assert 'export * from "./description";' in files["index.ts"]
-    assert max(text.count("\n") for text in files.values()) < 400
+    assert max(text.count("\n") for name, text in files.items() if name != "index.ts") < 400
 
 
 def test_records_are_compared_and_printed_as_dataclasses_are():

@@ -1,12 +1,14 @@
 import { button, coalesced, h } from "../../dom";
 import { icon } from "../../icons";
 import type { CallSite, SourceRange } from "../../protocol";
+import { browserStorage } from "../../storage";
 import { EXPANDED, type DescriptionModel } from "../../state/description-model";
 import { isSameElement } from "../../state/element-focus";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { holdWhileVisible } from "../../widgets/visibility";
 import type { Panel } from "../panel";
+import { EditorPane } from "../source-editor/editor-pane";
 import { placeText, shortPath, shortPlace } from "../place";
 import { currentModel } from "./current-model";
 import { SourceView, type Highlight } from "./source-view";
@@ -34,6 +36,7 @@ export class SourcePanel implements Panel {
   private readonly notice = h("p", { class: "empty" });
   private readonly empty = h("p", { class: "empty" }, strings.description.waiting);
   private readonly panes: HTMLElement;
+  private readonly editor: EditorPane;
   /** The file shown. */
   private file = "";
   private requested: RequestedPlace | null = null;
@@ -48,16 +51,22 @@ export class SourcePanel implements Panel {
     this.files.addEventListener("change", () => this.openFile(this.files.value));
     const heading = (text: string, title: string, ...more: HTMLElement[]): HTMLElement =>
       h("div", { class: "source-heading" }, h("span", { class: "toolbar-label", title }, text), ...more);
+    this.editor = new EditorPane(session, browserStorage(), (file, line) => this.chooseInEditor(file, line), (file) => {
+      this.file = file ?? this.file;
+      this.update();
+    });
     this.panes = h(
       "div",
       { class: "source-panes" },
       h(
         "section",
         { class: "source-pane" },
-        heading(words.origin, words.file, this.files),
+        heading(words.origin, words.file, this.files, this.editor.toggle),
         this.trail,
+        this.editor.notice,
         this.notice,
         this.origin.element,
+        this.editor.element,
       ),
       h("section", { class: "source-pane" }, heading(words.expanded, words.expandedHint), this.expanded.element),
     );
@@ -95,6 +104,7 @@ export class SourcePanel implements Panel {
   inspect(): object {
     const marks = (view: SourceView): object => view.highlighted.map(({ from, to, look }) => ({ from, to, look }));
     return {
+      editor: this.editor.inspect(),
       expanded: { lines: this.expanded.lineCount, marks: marks(this.expanded) },
       origin: { file: this.file, lines: this.origin.lineCount, marks: marks(this.origin) },
     };
@@ -118,15 +128,16 @@ export class SourcePanel implements Panel {
    * selection changes.
    */
   private refresh(): void {
-    if (this.requested === null || this.requested.file !== this.file) this.showFocus();
-    else this.update();
+    const stays = this.editor.isShown || (this.requested !== null && this.requested.file === this.file);
+    if (stays) this.update();
+    else this.showFocus();
   }
 
   private update(): void {
     this.model = currentModel(this.session);
     const { model } = this;
     const faulty = this.session.diagnostics.flatMap((item) => (item.file === null ? [] : [item.file]));
-    const files = [...new Set([...(model?.description.files ?? []), ...faulty, ...(this.requested ? [this.requested.file] : [])])];
+    const files = [...new Set([...(model?.description.files ?? []), ...faulty, ...this.editor.files, ...(this.requested ? [this.requested.file] : [])])];
     this.empty.hidden = model !== undefined || files.length > 0;
     this.panes.hidden = !this.empty.hidden;
     if (!files.includes(this.file)) this.file = files[0] ?? "";
@@ -143,11 +154,15 @@ export class SourcePanel implements Panel {
     const text = this.file === "" ? null : this.session.description.text(this.requested?.file === this.file ? (this.requested.display ?? display) : display, this.file);
     const marked = origin?.file === this.file ? marks(origin) : [];
     if (this.requested?.file === this.file) marked.push({ from: this.requested.line, to: this.requested.line, look: this.requested.look });
-    this.notice.hidden = typeof text === "string";
-    this.origin.element.hidden = text === null;
+    const highlights = [...marked, ...this.problems()];
+    const isWorkingFile = this.file !== "" && (this.requested?.file !== this.file || (this.requested.display ?? display) === display);
+    const isEdited = this.editor.show(isWorkingFile ? this.file : null, isWorkingFile ? highlights : [], this.pendingReveal.origin);
+    if (isEdited) this.pendingReveal.origin = null;
+    this.notice.hidden = isEdited || typeof text === "string";
+    this.origin.element.hidden = isEdited || text === null;
     if (this.file === "") this.notice.textContent = words.noOrigin;
     else this.notice.textContent = text === null ? words.gone : words.loading;
-    this.fill(this.origin, text, [...marked, ...this.problems()], "origin");
+    if (!isEdited) this.fill(this.origin, text, highlights, "origin");
     this.showTrail();
   }
 
@@ -205,6 +220,12 @@ export class SourcePanel implements Panel {
       : null;
     this.trail.hidden = steps.length === 0;
     this.trail.replaceChildren(h("span", { class: "tag" }, words.made), ...steps, ...(back ? [back] : []));
+  }
+
+  /** Selects the element written on a line, unless one of them is selected: clicks then only move the cursor. */
+  private chooseInEditor(file: string, line: number): void {
+    const here = this.model?.elementsAt(file, line) ?? [];
+    if (!here.some((element) => isSameElement(element, this.session.focus.current))) this.choose(file, line);
   }
 
   /**

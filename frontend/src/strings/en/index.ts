@@ -3,6 +3,7 @@ import { description } from "./description";
 import { details } from "./details";
 import { displays } from "./displays";
 import { editing } from "./editing";
+import { sourceEditor } from "./source-editor";
 import { meshes } from "./meshes";
 import { modelling } from "./modelling";
 import { monitor } from "./monitor";
@@ -41,6 +42,7 @@ export const en = {
   recording,
   comparison,
   editing,
+  sourceEditor,
   modelling,
   voice,
   details,

@@ -4,6 +4,7 @@ import { description } from "./description";
 import { details } from "./details";
 import { displays } from "./displays";
 import { editing } from "./editing";
+import { sourceEditor } from "./source-editor";
 import { meshes } from "./meshes";
 import { modelling } from "./modelling";
 import { monitor } from "./monitor";
@@ -29,6 +30,7 @@ export const zh: Strings = {
   recording,
   comparison,
   editing,
+  sourceEditor,
   modelling,
   voice,
   details,

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from linkwright.descriptions.editing.errors import EditRefusedError
 from linkwright.descriptions.editing.planning import EditPlan
-from linkwright.descriptions.editing.refusals import forbidden_file
+from linkwright.descriptions.editing.refusals import changed_file, forbidden_file
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
 from linkwright.files.whole_files import write_whole_file
 from linkwright.loading.lean_dataclasses import dataclass
@@ -93,7 +93,7 @@ class EditHistory:
             before = _bytes_of(path)
             known = decoded(before, path)
             if known.text != plan.before[path]:
-                raise EditRefusedError(_changed(path))
+                raise EditRefusedError(changed_file(path))
             mark = before[: len(before) - len(known.text.encode(known.encoding))]
             files[path] = before, mark + text.encode(known.encoding, "xmlcharrefreplace")
         _write({path: after for path, (_, after) in files.items()}, {path: old for path, (old, _) in files.items()})
@@ -149,7 +149,7 @@ def _write(new: Mapping[str, bytes], known: Mapping[str, bytes]) -> None:
     """
     for path, content in known.items():
         if _bytes_of(path) != content:
-            raise EditRefusedError(_changed(path))
+            raise EditRefusedError(changed_file(path))
     written: list[str] = []
     for path, content in new.items():
         try:
@@ -169,10 +169,3 @@ def _bytes_of(path: str) -> bytes:
         return read_bytes(path)
     except LinkwrightError as error:
         raise EditRefusedError(error.diagnostics[0]) from None
-
-
-def _changed(path: str) -> Diagnostic:
-    message = phrase(
-        "another program has changed '{path}' since it was read, so it is not written", path=display_path(path)
-    )
-    return Diagnostic("EDIT107", message, hint=phrase("check the current robot, and repeat the edit"))

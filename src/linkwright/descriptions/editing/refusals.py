@@ -91,3 +91,11 @@ def forbidden_file(path: str, why: object) -> Diagnostic:
     message = phrase("'{path}' is not written: {why}", path=display_path(path), why=why)
     hint = phrase("open the description from your own workspace, or change a copy of the file")
     return Diagnostic("EDIT106", message, hint=hint)
+
+
+def changed_file(path: str) -> Diagnostic:
+    """Return the finding that another program has changed a file, so that it is not written."""
+    message = phrase(
+        "another program has changed '{path}' since it was read, so it is not written", path=display_path(path)
+    )
+    return Diagnostic("EDIT107", message, hint=phrase("check the current robot, and repeat the edit"))

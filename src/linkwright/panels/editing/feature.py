@@ -30,6 +30,7 @@ class EditingFeature(PageFeature):
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
         self._history = EditHistory()
+        self._writing = asyncio.Lock()
         self._plans: dict[Page, tuple[int, EditPlan]] = {}
         self._newest: dict[Page, int] = {}
         self._watching: set[Page] = set()
@@ -74,7 +75,7 @@ class EditingFeature(PageFeature):
             page.send(editing.EditHistory(self._history.can_undo, self._history.can_redo))
             return
         if not page.is_here:
-            raise EditRefusedError(_elsewhere())
+            raise EditRefusedError(elsewhere())
         if isinstance(message, editing.PreviewEdit):
             if self._newest.get(page) == message.number:
                 await self._preview(page, message)
@@ -86,14 +87,28 @@ class EditingFeature(PageFeature):
                 raise EditRefusedError(
                     Diagnostic("EDIT101", phrase("this edit was not previewed before it was applied"))
                 )
-            files = await asyncio.to_thread(history.apply, plan)
-        elif isinstance(message, editing.UndoEdit):
-            files = await asyncio.to_thread(history.undo)
+            files = await self.write(plan)
         else:
-            files = await asyncio.to_thread(history.redo)
+            async with self._writing:
+                undone = history.undo if isinstance(message, editing.UndoEdit) else history.redo
+                files = await asyncio.to_thread(undone)
         page.send(editing.EditWritten(files, None))
-        for watching_page in self._watching:
-            watching_page.send(editing.EditHistory(history.can_undo, history.can_redo))
+        self._send_history()
+
+    async def write(self, plan: EditPlan) -> list[str]:
+        """Write the files of an edit, which can then be undone, and return their paths.
+
+        Raises:
+            EditRefusedError: see `EditHistory.apply`.
+        """
+        async with self._writing:
+            files = await asyncio.to_thread(self._history.apply, plan)
+        self._send_history()
+        return files
+
+    def _send_history(self) -> None:
+        for page in self._watching:
+            page.send(editing.EditHistory(self._history.can_undo, self._history.can_redo))
 
     async def _preview(self, page: Page, message: editing.PreviewEdit) -> None:
         robot, known = self._known_robot(page, message.display)
@@ -111,7 +126,7 @@ class EditingFeature(PageFeature):
 
     def _parts(self, page: Page, message: editing.AskEditableParts) -> editing.EditableParts:
         robot, known = self._known_robot(page, message.display)
-        why_not = _refusal_reason(robot, known) if page.is_here else _elsewhere().message
+        why_not = _refusal_reason(robot, known) if page.is_here else elsewhere().message
         parts = [] if robot is None else parts_of(robot, message.link)
         problem = "" if why_not is None else item_of(Diagnostic("EDIT101", why_not)).message
         return editing.EditableParts(message.display, message.link, problem, parts)
@@ -154,6 +169,7 @@ def _refusal_reason(robot: Robot | None, known: Description | None) -> Phrase | 
     return None
 
 
-def _elsewhere() -> Diagnostic:
+def elsewhere() -> Diagnostic:
+    """Return the finding that a page on another machine may not write files (EDIT109)."""
     message = phrase("files are written only from pages that are open on the machine with the files")
     return Diagnostic("EDIT109", message, hint=phrase("open the page there, or through an SSH tunnel"))

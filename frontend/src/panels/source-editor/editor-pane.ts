@@ -1,0 +1,127 @@
+import { button, h } from "../../dom";
+import { icon } from "../../icons";
+import type { Session } from "../../state/session";
+import type { TextStorage } from "../../storage";
+import { strings } from "../../strings";
+import type { Highlight } from "../description/source-view";
+import type { SourceEditor } from "./source-editor";
+
+const KEY = "linkwright.source-editor";
+const ON = "1";
+
+/** The place of the editor in the panel Source, and the button that shows it; the editor is loaded with its first file. */
+export class EditorPane {
+  readonly element = h("div", { class: "editor-pane" });
+  /** Why there is no editor, if the user wants one. */
+  readonly notice = h("p", { class: "empty editor-why-not", role: "status" });
+  readonly toggle: HTMLButtonElement;
+  private editor: SourceEditor | null = null;
+  private isWanted: boolean;
+  private isLoading = false;
+  private failure = "";
+  /** The file that is to be shown. */
+  private file: string | null = null;
+  private highlights: readonly Highlight[] = [];
+  private marked = "";
+  /** The line to scroll to once the file is shown. */
+  private line: { file: string; line: number } | null = null;
+
+  /**
+   * @param onLine - called with the file and the line that the user clicked.
+   * @param onChanged - called when another file is shown, or the editor is opened or closed.
+   */
+  constructor(
+    private readonly session: Session,
+    private readonly storage: TextStorage,
+    private readonly onLine: (file: string, line: number) => void,
+    private readonly onChanged: (file: string | null) => void,
+  ) {
+    this.isWanted = storage.getItem(KEY) === ON;
+    const words = strings.sourceEditor;
+    this.toggle = button(words.editHint, () => this.setWanted(!this.isWanted), "tool framed", icon("code"), words.edit);
+    this.element.hidden = true;
+    this.notice.hidden = true;
+    this.showToggle();
+  }
+
+  /** Whether the editor is in place of the text. */
+  get isShown(): boolean {
+    return this.isWanted && this.editor !== null && this.editor.whyNot === "" && this.editor.shown !== null;
+  }
+
+  /** The files that are open in the editor. */
+  get files(): readonly string[] {
+    return this.isShown ? (this.editor?.open.map(({ path }) => path) ?? []) : [];
+  }
+
+  /**
+   * Shows a file, if the user wants the editor; returns whether the editor shows it now.
+   *
+   * @param file - the path; null for a text that is not in a file of the disk.
+   * @param highlights - the marked lines.
+   * @param line - the line to scroll to; null for none.
+   */
+  show(file: string | null, highlights: readonly Highlight[], line: number | null): boolean {
+    this.file = file;
+    this.highlights = highlights;
+    if (this.isWanted && file !== null && !this.isLoading) {
+      if (this.editor === null) void this.load();
+      else if (this.editor.shown?.path !== file) void this.editor.show(file);
+    }
+    if (file !== null && line !== null) this.line = { file, line };
+    const isEdited = this.isShown && file !== null && this.editor?.shown?.path === file;
+    if (isEdited) this.mark();
+    this.element.hidden = !isEdited;
+    this.notice.textContent = this.failure || (this.editor?.whyNot ?? "");
+    this.notice.hidden = !this.isWanted || file === null || this.notice.textContent === "";
+    return isEdited;
+  }
+
+  inspect(): object | null {
+    return this.isShown ? (this.editor?.inspect() ?? null) : { whyNot: this.notice.hidden ? "" : this.notice.textContent };
+  }
+
+  private mark(): void {
+    const key = JSON.stringify([this.file, this.highlights]);
+    const line = this.line?.file === this.file ? this.line.line : null;
+    if (key === this.marked && line === null) return;
+    [this.marked, this.line] = [key, null];
+    this.editor?.mark(this.highlights, line);
+  }
+
+  private setWanted(isWanted: boolean): void {
+    this.isWanted = isWanted;
+    this.storage.setItem(KEY, isWanted ? ON : "");
+    this.showToggle();
+    this.onChanged(this.file);
+    if (this.isShown) this.editor?.view.focus();
+  }
+
+  private showToggle(): void {
+    const words = strings.sourceEditor;
+    this.toggle.setAttribute("aria-pressed", String(this.isWanted));
+    this.toggle.title = this.isWanted ? words.view : words.editHint;
+  }
+
+  private async load(): Promise<void> {
+    this.isLoading = true;
+    try {
+      const { SourceEditor } = await import("./source-editor");
+      this.editor = new SourceEditor(this.session, this.onLine);
+    } catch {
+      this.failure = strings.sourceEditor.failed;
+    }
+    this.isLoading = false;
+    const { editor } = this;
+    if (editor !== null) {
+      this.element.append(editor.element);
+      let last = "";
+      editor.changed.on(() => {
+        const now = `${String(editor.whyNot)} ${editor.shown?.path ?? ""} ${editor.open.length}`;
+        if (now !== last) this.onChanged(editor.shown?.path ?? null);
+        last = now;
+      });
+    }
+    this.onChanged(this.file);
+  }
+}

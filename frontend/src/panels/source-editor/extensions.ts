@@ -1,0 +1,51 @@
+import { closeBrackets, closeBracketsKeymap, completionKeymap } from "@codemirror/autocomplete";
+import { defaultKeymap, history, historyKeymap, indentWithTab } from "@codemirror/commands";
+import { bracketMatching, foldGutter, foldKeymap, indentOnInput, indentUnit } from "@codemirror/language";
+import { lintGutter, lintKeymap } from "@codemirror/lint";
+import { highlightSelectionMatches, search, searchKeymap } from "@codemirror/search";
+import { EditorState, type Extension } from "@codemirror/state";
+import { drawSelection, EditorView, highlightActiveLine, highlightSpecialChars, keymap, lineNumbers, tooltips } from "@codemirror/view";
+import { strings } from "../../strings";
+import { shortPath } from "../place";
+import { indentation, syntaxOf } from "./languages";
+import { markedLines } from "./marks";
+import { phrases } from "./phrases";
+import { pageTheme } from "./theme";
+
+/** Returns everything of an editor that needs no language server. */
+export function baseExtensions(path: string, text: string, isReadOnly: boolean): Extension {
+  const words = strings.sourceEditor;
+  const label = words.text(shortPath(path, 2));
+  return [
+    lineNumbers(),
+    foldGutter(),
+    lintGutter(),
+    highlightSpecialChars(),
+    history(),
+    drawSelection(),
+    indentOnInput(),
+    bracketMatching(),
+    closeBrackets(),
+    highlightActiveLine(),
+    highlightSelectionMatches(),
+    search({ top: true }),
+    keymap.of([
+      ...closeBracketsKeymap,
+      ...defaultKeymap,
+      ...searchKeymap,
+      ...historyKeymap,
+      ...foldKeymap,
+      ...completionKeymap,
+      ...lintKeymap,
+      indentWithTab,
+    ]),
+    indentUnit.of(indentation(text)),
+    EditorState.phrases.of(phrases),
+    EditorState.readOnly.of(isReadOnly),
+    EditorView.contentAttributes.of({ "aria-label": label, "aria-description": words.keys, tabindex: "0" }),
+    tooltips({ parent: document.body }), // the dock cuts what is outside of a panel
+    markedLines,
+    pageTheme,
+    syntaxOf(path),
+  ];
+}

@@ -1,0 +1,200 @@
+import type { Connection } from "../../connection/connection";
+import { button, h } from "../../dom";
+import { icon } from "../../icons";
+import { Signal } from "../../signal";
+import { strings } from "../../strings";
+
+interface Folder {
+  readonly folders: readonly string[];
+  readonly files: readonly string[];
+}
+
+/** The files of the workspace as a tree, whose folders are read when they are opened. */
+export class FileTree {
+  readonly element: HTMLElement;
+  readonly shownChanged = new Signal<boolean>();
+  private readonly list = h("div", { class: "file-tree-list", role: "tree", aria: { label: strings.sourceEditor.tree } });
+  private readonly name = h("input", { class: "field file-tree-name" });
+  private readonly folders = new Map<string, Folder>();
+  private readonly expanded = new Set<string>();
+  private root = "";
+  private current = "";
+  private unsaved: ReadonlySet<string> = new Set();
+  /** The path of the item that the Tab key reaches. */
+  private reachable = "";
+
+  /**
+   * @param onChosen - called with the path of a file to show.
+   * @param onCreated - called with the path of a file to create.
+   */
+  constructor(
+    private readonly connection: Connection,
+    private readonly onChosen: (path: string) => void,
+    onCreated: (path: string) => void,
+  ) {
+    const words = strings.sourceEditor;
+    this.name.placeholder = words.newFilePath;
+    this.name.setAttribute("aria-label", words.newFilePath);
+    this.name.hidden = true;
+    const add = button(words.newFileHint, () => this.askName(), "tool bare", icon("plus"), words.newFile);
+    this.name.addEventListener("keydown", (event) => {
+      if (event.key === "Escape") this.name.hidden = true;
+      if (event.key !== "Enter" || this.name.value.trim() === "") return;
+      onCreated(join(this.root, this.name.value.trim()));
+      this.name.hidden = true;
+    });
+    this.element = h("nav", { class: "file-tree", aria: { label: words.tree } }, h("div", { class: "file-tree-head" }, add), this.name, this.list);
+    this.element.hidden = true;
+    this.list.addEventListener("click", (event) => this.activate(itemOf(event.target)));
+    this.list.addEventListener("keydown", (event) => this.onKeyDown(event));
+    connection.on("source_folder", ({ path, folders, files }) => {
+      this.folders.set(path, { folders, files });
+      this.draw();
+    });
+  }
+
+  toggle(): void {
+    this.element.hidden = !this.element.hidden;
+    this.shownChanged.emit(!this.element.hidden);
+    if (!this.element.hidden) this.reload();
+  }
+
+  setFolder(root: string): void {
+    if (root !== this.root) this.folders.clear();
+    this.root = root;
+    this.reachable = "";
+    this.expandTo(this.current);
+    this.reload();
+  }
+
+  setCurrent(path: string): void {
+    this.current = path;
+    this.expandTo(path);
+    this.draw();
+  }
+
+  setUnsaved(paths: readonly string[]): void {
+    if (paths.length === this.unsaved.size && paths.every((path) => this.unsaved.has(path))) return;
+    this.unsaved = new Set(paths);
+    this.draw();
+  }
+
+  /** Reads the folders again that are shown. */
+  reload(): void {
+    if (this.element.hidden || this.root === "") return;
+    for (const path of [this.root, ...this.expanded]) this.request(path);
+  }
+
+  private request(path: string): void {
+    this.connection.send({ type: "ask_source_folder", path });
+  }
+
+  private expandTo(path: string): void {
+    if (this.root === "" || !path.startsWith(this.root)) return;
+    const parts = path.slice(this.root.length).split("/").filter((part) => part !== "");
+    let folder = this.root;
+    for (const part of parts.slice(0, -1)) {
+      folder = join(folder, part);
+      if (this.expanded.has(folder)) continue;
+      this.expanded.add(folder);
+      if (!this.element.hidden) this.request(folder);
+    }
+  }
+
+  private askName(): void {
+    this.name.hidden = false;
+    const folder = this.current.startsWith(this.root) ? this.current.slice(this.root.length + 1).replace(/[^/]*$/, "") : "";
+    this.name.value = folder;
+    this.name.focus();
+  }
+
+  private draw(): void {
+    const items: HTMLElement[] = [];
+    const hadFocus = this.list.contains(document.activeElement);
+    this.addItems(items, this.root, 1);
+    if (!items.some((item) => item.dataset["path"] === this.reachable)) this.reachable = items[0]?.dataset["path"] ?? "";
+    for (const item of items) item.tabIndex = item.dataset["path"] === this.reachable ? 0 : -1;
+    this.list.replaceChildren(...items);
+    if (hadFocus) this.focus(this.reachable);
+  }
+
+  private addItems(items: HTMLElement[], folder: string, level: number): void {
+    const known = this.folders.get(folder);
+    if (!known) return;
+    for (const name of known.folders) {
+      const path = join(folder, name);
+      const isOpen = this.expanded.has(path);
+      const item = treeItem(path, level, icon("chevron"), name);
+      item.setAttribute("aria-expanded", String(isOpen));
+      items.push(item);
+      if (isOpen) this.addItems(items, path, level + 1);
+    }
+    for (const name of known.files) {
+      const path = join(folder, name);
+      const isUnsaved = this.unsaved.has(path);
+      const item = treeItem(path, level, icon("file"), name);
+      item.setAttribute("aria-selected", String(path === this.current));
+      if (isUnsaved) item.append(h("span", { class: "file-tree-unsaved", title: strings.sourceEditor.unsaved, aria: { label: strings.sourceEditor.unsaved }, role: "img" }, "●"));
+      items.push(item);
+    }
+  }
+
+  private activate(item: HTMLElement | null): void {
+    const path = item?.dataset["path"];
+    if (!item || path === undefined) return;
+    this.reachable = path;
+    if (!item.hasAttribute("aria-expanded")) {
+      this.draw();
+      this.onChosen(path);
+    } else this.expand(path, !this.expanded.has(path));
+  }
+
+  private expand(path: string, isOpen: boolean): void {
+    if (isOpen) {
+      this.expanded.add(path);
+      this.request(path);
+    } else this.expanded.delete(path);
+    this.draw();
+    this.focus(path);
+  }
+
+  private onKeyDown(event: KeyboardEvent): void {
+    const item = itemOf(event.target);
+    const path = item?.dataset["path"];
+    if (!item || path === undefined) return;
+    const items = [...this.list.querySelectorAll<HTMLElement>("[role=treeitem]")];
+    const at = items.indexOf(item);
+    const next = { ArrowDown: at + 1, ArrowUp: at - 1, Home: 0, End: items.length - 1 }[event.key];
+    const isOpen = item.getAttribute("aria-expanded");
+    if (next !== undefined) this.focus(items[next]?.dataset["path"] ?? path);
+    else if (event.key === "Enter" || event.key === " ") this.activate(item);
+    else if (event.key === "ArrowRight" && isOpen === "false") this.expand(path, true);
+    else if (event.key === "ArrowLeft" && isOpen === "true") this.expand(path, false);
+    else if (event.key === "ArrowLeft") this.focus(path.replace(/\/[^/]*$/, ""));
+    else return;
+    event.preventDefault();
+  }
+
+  private focus(path: string): void {
+    const items = [...this.list.querySelectorAll<HTMLElement>("[role=treeitem]")];
+    const item = items.find((each) => each.dataset["path"] === path);
+    if (!item) return;
+    this.reachable = path;
+    for (const each of items) each.tabIndex = each === item ? 0 : -1;
+    item.focus();
+  }
+}
+
+function treeItem(path: string, level: number, ...content: (Node | string)[]): HTMLElement {
+  const item = h("div", { class: "file-tree-item", role: "treeitem", title: path, data: { path }, aria: { level: String(level) } }, ...content);
+  item.style.setProperty("--level", String(level));
+  return item;
+}
+
+function itemOf(target: EventTarget | null): HTMLElement | null {
+  return target instanceof Element ? target.closest<HTMLElement>("[role=treeitem]") : null;
+}
+
+function join(folder: string, name: string): string {
+  return `${folder.replace(/\/$/, "")}/${name}`;
+}

@@ -1,0 +1,237 @@
+import { LSPClient, LSPPlugin, Workspace, type LSPClientConfig, type WorkspaceFile } from "@codemirror/lsp-client";
+import { formatDocument, findReferences, hoverTooltips, jumpToDefinition, serverCompletion } from "@codemirror/lsp-client";
+import { ChangeSet, type Extension, type Text, type TransactionSpec } from "@codemirror/state";
+import { EditorView, keymap, ViewPlugin, type ViewUpdate } from "@codemirror/view";
+import type { Connection } from "../../connection/connection";
+import { languageId } from "./languages";
+import { fitsMessage } from "./message-size";
+import { pathOf, type ServerRange } from "./server-places";
+import { safeHtml } from "./safe-html";
+import type { SourceDocument } from "./source-document";
+
+/** A finding of the language server, as in the protocol. */
+export interface ServerFinding {
+  readonly range: ServerRange;
+  readonly severity?: number;
+  readonly code?: number | string;
+  readonly message: string;
+}
+
+/** The documents of the editor, for the language server. */
+export interface Documents {
+  readonly open: readonly SourceDocument[];
+  readonly view: EditorView;
+  readonly shown: SourceDocument | null;
+  /** Shows a file, and returns whether it can be shown. */
+  show(path: string): Promise<boolean>;
+  /** Opens a file without showing it; null if it cannot be read. */
+  load(path: string): Promise<SourceDocument | null>;
+  /** Changes a document, whether it is shown or not. */
+  change(document: SourceDocument, spec: TransactionSpec): void;
+  /** Receives the findings of a file. */
+  findings(uri: string, findings: readonly ServerFinding[]): void;
+}
+
+const TIMEOUT_MS = 20_000;
+/** Changes are sent this time after the last key, ms. */
+const SYNC_MS = 120;
+
+/** Of the protocol: the request was cancelled, or its text has changed meanwhile. */
+const OUTDATED: readonly unknown[] = [-32800, -32801];
+/** Requests that the next key or movement of the mouse repeats. */
+const REPEATED = ["textDocument/completion", "textDocument/hover"];
+
+/** A client for which an outdated answer is none, and no error. */
+class PatientClient extends LSPClient {
+  // eslint-disable-next-line @typescript-eslint/no-unnecessary-type-parameters -- the type of the overridden method
+  override request<Params, Result>(method: string, params: Params): Promise<Result> {
+    const answer = super.request<Params, Result>(method, params);
+    if (!REPEATED.includes(method)) return answer;
+    return answer.catch((error: unknown) => {
+      if (typeof error === "object" && error !== null && "code" in error && OUTDATED.includes(error.code)) return null as Result;
+      throw error;
+    });
+  }
+}
+
+class DocumentFile implements WorkspaceFile {
+  version = 0;
+  doc: Text;
+  readonly languageId: string;
+  /** The changes that the server does not know yet. */
+  unsynced: ChangeSet;
+
+  constructor(
+    readonly document: SourceDocument,
+    private readonly documents: Documents,
+  ) {
+    this.doc = document.state.doc;
+    this.languageId = languageId(document.path);
+    this.unsynced = ChangeSet.empty(this.doc.length);
+  }
+
+  get uri(): string {
+    return this.document.uri;
+  }
+
+  getView(): EditorView | null {
+    return this.documents.shown === this.document ? this.documents.view : null;
+  }
+}
+
+/** All open documents; the view shows one of them. */
+class DocumentWorkspace extends Workspace {
+  files: DocumentFile[] = [];
+
+  constructor(
+    client: LSPClient,
+    private readonly documents: Documents,
+  ) {
+    super(client);
+  }
+
+  add(document: SourceDocument): void {
+    const file = new DocumentFile(document, this.documents);
+    this.files.push(file);
+    if (this.client.connected) this.client.didOpen(file);
+  }
+
+  record(document: SourceDocument, changes: ChangeSet): void {
+    const file = this.files.find((each) => each.document === document);
+    if (file) file.unsynced = file.unsynced.compose(changes);
+  }
+
+  override syncFiles(): { file: DocumentFile; prevDoc: Text; changes: ChangeSet }[] {
+    const changed = this.files.filter(({ unsynced }) => !unsynced.empty);
+    return changed.map((file) => {
+      const result = { file, prevDoc: file.doc, changes: file.unsynced };
+      file.doc = file.document.state.doc;
+      file.unsynced = ChangeSet.empty(file.doc.length);
+      file.version += 1;
+      const view = file.getView();
+      if (view) LSPPlugin.get(view)?.clear();
+      return result;
+    });
+  }
+
+  /** Documents stay open when the view shows another one. */
+  override openFile(): void {
+    // `add` has opened it.
+  }
+
+  override closeFile(): void {
+    // It may have unsaved changes, which the findings of other files depend on.
+  }
+
+  override async requestFile(uri: string): Promise<DocumentFile | null> {
+    const path = pathOf(uri);
+    const document = path === null ? null : await this.documents.load(path);
+    return this.files.find((each) => each.document === document) ?? null;
+  }
+
+  override async displayFile(uri: string): Promise<EditorView | null> {
+    const path = pathOf(uri);
+    return path !== null && (await this.documents.show(path)) ? this.documents.view : null;
+  }
+
+  override updateFile(uri: string, update: TransactionSpec): void {
+    const file = this.files.find((each) => each.uri === uri);
+    if (file) this.documents.change(file.document, update);
+  }
+}
+
+/** The page's language server, to which the messages go through the page's own connection. */
+export class LanguageService {
+  readonly client: LSPClient;
+  private readonly workspace: DocumentWorkspace;
+  private readonly config: LSPClientConfig;
+  private receive: (content: string) => void = () => undefined;
+
+  constructor(
+    private readonly connection: Connection,
+    documents: Documents,
+  ) {
+    let workspace: DocumentWorkspace | undefined;
+    this.config = {
+      timeout: TIMEOUT_MS,
+      sanitizeHTML: safeHtml,
+      workspace: (client) => (workspace = new DocumentWorkspace(client, documents)),
+      notificationHandlers: {
+        "textDocument/publishDiagnostics": (_, { uri, version, diagnostics }: { uri: string; version?: number | null; diagnostics: ServerFinding[] }) => {
+          const file = this.workspace.getFile(uri);
+          if (file && (version === undefined || version === null || version === file.version)) documents.findings(uri, diagnostics);
+          return true;
+        },
+      },
+      extensions: [{ clientCapabilities: { textDocument: { publishDiagnostics: { versionSupport: true, codeDescriptionSupport: true } } } }],
+    };
+    this.client = new PatientClient(this.config);
+    if (workspace === undefined) throw new Error("the client has made no workspace");
+    this.workspace = workspace;
+    connection.on("language_server_answer", ({ content }) => this.receive(content));
+  }
+
+  /** Begins a session with a new language server. */
+  connect(rootUri: string): void {
+    const { connection, client } = this;
+    if (client.connected) client.disconnect();
+    this.config.rootUri = rootUri;
+    for (const file of this.workspace.files) {
+      file.doc = file.document.state.doc;
+      file.unsynced = ChangeSet.empty(file.doc.length);
+    }
+    client.connect({
+      // Without the text of such a file, the server reads it from the disk.
+      send: (content) => fitsMessage(content) && connection.send({ type: "ask_language_server", content }),
+      subscribe: (handler) => (this.receive = handler),
+      unsubscribe: () => (this.receive = () => undefined),
+    });
+    client.initializing.catch(() => undefined); // requests tell it
+  }
+
+  add(document: SourceDocument): void {
+    this.workspace.add(document);
+  }
+
+  record(document: SourceDocument, changes: ChangeSet): void {
+    this.workspace.record(document, changes);
+  }
+
+  /** Notifies the server of files that were written, by the editor or another program. */
+  filesChanged(uris: readonly string[]): void {
+    const changes = uris.map((uri) => ({ uri, type: 2 }));
+    if (changes.length > 0) this.client.notification("workspace/didChangeWatchedFiles", { changes });
+  }
+
+  /** Returns what makes a view of a document use the server. */
+  extension(document: { uri: string; path: string }): Extension {
+    return [
+      this.client.plugin(document.uri, languageId(document.path)),
+      serverCompletion({ override: true }),
+      hoverTooltips(),
+      ViewPlugin.define(() => new Synchronizer(this.client)),
+      keymap.of([
+        { key: "F12", run: jumpToDefinition, preventDefault: true },
+        { key: "Shift-F12", run: findReferences, preventDefault: true },
+        { key: "Shift-Alt-f", run: formatDocument, preventDefault: true },
+      ]),
+    ];
+  }
+}
+
+/** Sends changes soon after they were made, so that their findings arrive. */
+class Synchronizer {
+  private timer: ReturnType<typeof setTimeout> | undefined;
+
+  constructor(private readonly client: LSPClient) {}
+
+  update({ docChanged }: ViewUpdate): void {
+    if (!docChanged) return;
+    clearTimeout(this.timer);
+    this.timer = setTimeout(() => this.client.sync(), SYNC_MS);
+  }
+
+  destroy(): void {
+    clearTimeout(this.timer);
+  }
+}

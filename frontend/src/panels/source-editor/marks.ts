@@ -1,0 +1,40 @@
+import { StateEffect, StateField, type EditorState, type Extension, type Range } from "@codemirror/state";
+import { Decoration, EditorView, type DecorationSet } from "@codemirror/view";
+import type { Highlight } from "../description/source-view";
+import type { SourceDocument } from "./source-document";
+
+const setMarks = StateEffect.define<DecorationSet>();
+const LOOKS = { focus: Decoration.line({ class: "cm-focus-line" }), problem: Decoration.line({ class: "cm-problem-line" }) };
+
+/** The marked lines, which move with the text. */
+const marks = StateField.define<DecorationSet>({
+  create: () => Decoration.none,
+  update: (old, transaction) => {
+    const effect = transaction.effects.find((each) => each.is(setMarks));
+    return effect ? effect.value : old.map(transaction.changes);
+  },
+  provide: (field) => EditorView.decorations.from(field),
+});
+
+export const markedLines: Extension = marks;
+
+/** Returns the effect that marks lines, given as lines of the file on the disk. */
+export function marksOf(document: SourceDocument, highlights: readonly Highlight[]): StateEffect<DecorationSet> {
+  const ranges: Range<Decoration>[] = [];
+  for (const { from, to, look } of highlights) {
+    for (let line = from; line <= Math.min(to, document.savedText.lines); line += 1) {
+      ranges.push(LOOKS[look].range(document.state.doc.lineAt(document.placeNow(document.savedText.line(line).from)).from));
+    }
+  }
+  return setMarks.of(Decoration.set(ranges, true));
+}
+
+/** Returns the first and last marked line of each look, for tests. */
+export function inspectMarks(state: EditorState): { line: number; look: string }[] {
+  const found: { line: number; look: string }[] = [];
+  state.field(marks, false)?.between(0, state.doc.length, (from, _, { spec }) => {
+    const look = (spec as { class: string }).class === "cm-focus-line" ? "focus" : "problem";
+    found.push({ line: state.doc.lineAt(from).number, look });
+  });
+  return found;
+}

@@ -1,0 +1,34 @@
+const ALLOWED = new Set("A B BLOCKQUOTE BR CODE DEL EM H1 H2 H3 H4 H5 H6 HR I LI OL P PRE SPAN STRONG TABLE TBODY TD TH THEAD TR UL".split(" "));
+const DROPPED = new Set(["SCRIPT", "STYLE", "TEMPLATE", "IFRAME", "OBJECT", "EMBED", "SVG", "MATH"]);
+
+/**
+ * Returns HTML with nothing but formatted text and links to web pages: what is shown comes from the files of packages,
+ * which strangers write.
+ */
+export function safeHtml(html: string): string {
+  const { body } = new DOMParser().parseFromString(html, "text/html");
+  clean(body);
+  return body.innerHTML;
+}
+
+function clean(element: Element): void {
+  for (const child of [...element.children]) {
+    if (DROPPED.has(child.tagName.toUpperCase())) {
+      child.remove();
+      continue;
+    }
+    clean(child);
+    if (!ALLOWED.has(child.tagName)) {
+      child.replaceWith(...child.childNodes);
+      continue;
+    }
+    for (const { name, value } of [...child.attributes]) {
+      const isLink = child.tagName === "A" && name === "href" && /^https?:\/\//i.test(value);
+      if (!isLink && !(child.tagName === "SPAN" && name === "class")) child.removeAttribute(name);
+    }
+    if (child.tagName === "A") {
+      child.setAttribute("target", "_blank");
+      child.setAttribute("rel", "noreferrer");
+    }
+  }
+}

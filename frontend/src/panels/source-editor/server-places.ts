@@ -1,0 +1,21 @@
+import type { Text } from "@codemirror/state";
+
+/** A range of a text, as in the protocol of language servers. */
+export interface ServerRange {
+  readonly start: { line: number; character: number };
+  readonly end: { line: number; character: number };
+}
+
+/** Returns the position of a place in a text; one beyond the text is its end. */
+export function positionIn(text: Text, { line, character }: ServerRange["start"]): number {
+  if (line >= text.lines) return text.length;
+  const found = text.line(line + 1);
+  return Math.min(found.from + character, found.to);
+}
+
+/** Returns the path of a file's URI; null for other URIs. */
+export function pathOf(uri: string): string | null {
+  if (!uri.startsWith("file:///")) return null;
+  const path = decodeURIComponent(uri.slice("file://".length));
+  return /^\/[A-Za-z]:/.test(path) ? path.slice(1) : path;
+}

@@ -1,0 +1,122 @@
+import { isolateHistory } from "@codemirror/commands";
+import { Annotation, ChangeSet, type EditorState, type Text, type Transaction, type TransactionSpec } from "@codemirror/state";
+import { mergeChanges, smallestChange, textOf } from "./document-changes";
+
+/** Marks a transaction that brings a change of the file into the editor. */
+const fromDisk = Annotation.define<ChangeSet>();
+
+/** A version of the file that another program wrote, whose changes overlap with unsaved ones. */
+interface Conflict {
+  readonly text: Text;
+  readonly version: number;
+}
+
+/** A file in the editor: its edited text, and what is known of the file on the disk. */
+export class SourceDocument {
+  conflict: Conflict | null = null;
+  /** Why the file cannot be read or written; empty if it can be edited. */
+  whyNot = "";
+  /** The position of the first visible line when the document was last shown. */
+  scrolledTo = 0;
+  private saved: Text;
+  private unsaved: ChangeSet;
+  /** The text that was sent to be written, and the changes since; null while nothing is being written. */
+  private writing: { text: Text; since: ChangeSet } | null = null;
+
+  constructor(
+    readonly path: string,
+    readonly uri: string,
+    public version: number,
+    public state: EditorState,
+  ) {
+    this.saved = state.doc;
+    this.unsaved = ChangeSet.empty(state.doc.length);
+  }
+
+  get isUnsaved(): boolean {
+    return !this.state.doc.eq(this.saved);
+  }
+
+  get isWriting(): boolean {
+    return this.writing !== null;
+  }
+
+  /** The text on the disk, as far as it was merged. */
+  get savedText(): Text {
+    return this.saved;
+  }
+
+  /** Returns the place in the edited text of a place in the text on the disk. */
+  placeNow(position: number): number {
+    return this.unsaved.mapPos(Math.min(position, this.saved.length));
+  }
+
+  /** Records a transaction that was applied to the text. */
+  record(transaction: Transaction): void {
+    this.state = transaction.state;
+    if (!transaction.docChanged) return;
+    const { changes } = transaction;
+    this.unsaved = transaction.annotation(fromDisk) ?? this.unsaved.compose(changes);
+    if (this.writing) this.writing.since = this.writing.since.compose(changes);
+  }
+
+  /**
+   * Takes over a new text of the file; returns the transaction that brings it into the editor, or null if there is none
+   * or there is a conflict.
+   */
+  diskChanged(content: string, version: number): TransactionSpec | null {
+    const text = textOf(content);
+    this.version = version;
+    if (text.eq(this.state.doc)) {
+      this.rebase(text);
+      return null;
+    }
+    const disk = smallestChange(this.saved, text);
+    if (disk.empty && this.conflict === null) return null;
+    const merged = mergeChanges(disk, this.unsaved);
+    if (merged === null) {
+      this.conflict = { text, version };
+      return null;
+    }
+    this.saved = text;
+    this.conflict = null;
+    return { changes: merged.edit, annotations: [fromDisk.of(merged.unsaved), isolateHistory.of("full")], userEvent: "disk" };
+  }
+
+  /** Settles a conflict for the edited text, which is unsaved then. */
+  keepMine(): void {
+    if (this.conflict) this.rebase(this.conflict.text);
+  }
+
+  /** Settles a conflict for the text on the disk; undoing the returned transaction brings back the edited text. */
+  takeDisk(): TransactionSpec | null {
+    const { conflict } = this;
+    if (!conflict) return null;
+    const changes = smallestChange(this.state.doc, conflict.text);
+    this.rebase(conflict.text);
+    const unsaved = ChangeSet.empty(conflict.text.length);
+    return { changes, annotations: [fromDisk.of(unsaved), isolateHistory.of("full")], userEvent: "disk" };
+  }
+
+  /** Returns the text to write. */
+  beginWriting(): string {
+    this.writing = { text: this.state.doc, since: ChangeSet.empty(this.state.doc.length) };
+    return this.state.doc.toString();
+  }
+
+  /** Ends writing: with the version of the file, or null if it was not written. */
+  endWriting(version: number | null): void {
+    if (this.writing && version !== null) {
+      this.saved = this.writing.text;
+      this.unsaved = this.writing.since;
+      this.version = version;
+    }
+    this.writing = null;
+  }
+
+  private rebase(text: Text): void {
+    this.saved = text;
+    this.unsaved = smallestChange(text, this.state.doc);
+    this.conflict = null;
+  }
+}

@@ -1,0 +1,119 @@
+import { EditorState, type TransactionSpec } from "@codemirror/state";
+import { describe, expect, it } from "vitest";
+import { smallestChange, textOf } from "../src/panels/source-editor/document-changes";
+import { indentation, languageId } from "../src/panels/source-editor/languages";
+import { fitsMessage } from "../src/panels/source-editor/message-size";
+import { pathOf, positionIn } from "../src/panels/source-editor/server-places";
+import { SourceDocument } from "../src/panels/source-editor/source-document";
+
+const TEXT = "<robot>\n  <link name='a'/>\n  <link name='b'/>\n</robot>\n";
+
+function documentOf(text = TEXT): SourceDocument {
+  return new SourceDocument("/ws/a.urdf", "file:///ws/a.urdf", 1, EditorState.create({ doc: text }));
+}
+
+function apply(document: SourceDocument, spec: TransactionSpec | null): void {
+  if (spec) document.record(document.state.update(spec));
+}
+
+/** Replaces a part of the text, as a user does. */
+function type(document: SourceDocument, old: string, now: string): void {
+  const from = document.state.doc.toString().indexOf(old);
+  apply(document, { changes: { from, to: from + old.length, insert: now } });
+}
+
+function textIn(document: SourceDocument): string {
+  return document.state.doc.toString();
+}
+
+describe("a document", () => {
+  it("is unsaved from a change until it is written or the change is taken back", () => {
+    const document = documentOf();
+    expect(document.isUnsaved).toBe(false);
+    type(document, "'a'", "'c'");
+    expect(document.isUnsaved).toBe(true);
+    type(document, "'c'", "'a'");
+    expect(document.isUnsaved).toBe(false);
+    type(document, "'a'", "'c'");
+    expect(document.beginWriting()).toBe(TEXT.replace("'a'", "'c'"));
+    type(document, "'b'", "'d'");
+    document.endWriting(2);
+    expect([document.isUnsaved, document.version, document.savedText.toString()]).toEqual([true, 2, TEXT.replace("'a'", "'c'")]);
+  });
+
+  it("stays unsaved if it was not written", () => {
+    const document = documentOf();
+    type(document, "'a'", "'c'");
+    document.beginWriting();
+    document.endWriting(null);
+    expect([document.isUnsaved, document.version, document.isWriting]).toEqual([true, 1, false]);
+  });
+
+  it("follows the file, and keeps unsaved changes of other places", () => {
+    const document = documentOf();
+    type(document, "'a'", "'mine'");
+    apply(document, document.diskChanged(TEXT.replace("'b'", "'theirs'"), 2));
+    expect(textIn(document)).toBe("<robot>\n  <link name='mine'/>\n  <link name='theirs'/>\n</robot>\n");
+    expect([document.isUnsaved, document.conflict, document.version]).toEqual([true, null, 2]);
+    type(document, "'mine'", "'a'");
+    expect(document.isUnsaved).toBe(false);
+  });
+
+  it.each([
+    ["mine", (document: SourceDocument) => (document.keepMine(), null), "'mine'", true],
+    ["that of the disk", (document: SourceDocument) => document.takeDisk(), "'theirs'", false],
+  ])("with changes of the same place waits for the user, who chooses %s", (_, settle, name, isUnsaved) => {
+    const document = documentOf();
+    type(document, "'a'", "'mine'");
+    const theirs = TEXT.replace("'a'", "'theirs'");
+    expect(document.diskChanged(theirs, 2)).toBeNull();
+    expect(document.conflict?.version).toBe(2);
+    expect(textIn(document)).toContain("'mine'");
+    apply(document, settle(document));
+    expect(textIn(document)).toBe(TEXT.replace("'a'", name));
+    expect([document.isUnsaved, document.conflict, document.savedText.toString()]).toEqual([isUnsaved, null, theirs]);
+  });
+
+  it("has no conflict with a file that has the same change", () => {
+    const document = documentOf();
+    type(document, "'a'", "'c'");
+    expect(document.diskChanged(TEXT.replace("'a'", "'c'"), 2)).toBeNull();
+    expect([document.isUnsaved, document.conflict]).toEqual([false, null]);
+  });
+
+  it("finds places of the file in the edited text", () => {
+    const document = documentOf();
+    type(document, "<robot>\n", "<robot>\n\n\n");
+    const before = TEXT.indexOf("'b'");
+    expect(document.placeNow(before)).toBe(before + 2);
+  });
+});
+
+it("the smallest change replaces one range", () => {
+  const [before, after] = [textOf("one two three"), textOf("one 2 three")];
+  const parts: unknown[] = [];
+  smallestChange(before, after).iterChanges((from, to, _a, _b, text) => parts.push([from, to, text.toString()]));
+  expect(parts).toEqual([[4, 7, "2"]]);
+  expect(smallestChange(before, before).empty).toBe(true);
+  expect(smallestChange(textOf("aa"), textOf("aaa")).apply(textOf("aa")).toString()).toBe("aaa");
+});
+
+it("paths come from URIs of files only", () => {
+  expect(pathOf("file:///ws/%E4%B8%AD%20b.urdf")).toBe("/ws/中 b.urdf");
+  expect(pathOf("file:///C:/ws/a.urdf")).toBe("C:/ws/a.urdf");
+  expect(pathOf("linkwright-expansion:/ws/a.urdf")).toBeNull();
+});
+
+it("languages and indentation follow the file", () => {
+  expect(["a.urdf.xacro", "b.RVIZ", "c.launch.py", "CMakeLists.txt"].map(languageId)).toEqual(["xml", "yaml", "python", "plaintext"]);
+  expect([indentation("a:\n    b: 1\n"), indentation("<a>\n\t<b/>"), indentation("a")]).toEqual(["    ", "\t", "  "]);
+});
+
+it("positions beyond a line or text are its end", () => {
+  const text = textOf("ab\nc");
+  expect([positionIn(text, { line: 0, character: 9 }), positionIn(text, { line: 1, character: 1 }), positionIn(text, { line: 7, character: 0 })]).toEqual([2, 4, 4]);
+});
+
+it("a message with a text has at most a megabyte", () => {
+  expect([fitsMessage("a".repeat(900_000)), fitsMessage("中".repeat(300_000)), fitsMessage("中".repeat(400_000)), fitsMessage('"'.repeat(600_000))]).toEqual([true, true, false, false]);
+});

@@ -1,0 +1,125 @@
+"""The editor of source files: the files of the workspace, and the messages of the language server.
+
+Paths are absolute. Texts have the line end LF, whatever the file has.
+"""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from linkwright.page.protocol.description import DiagnosticItem
+from linkwright.page.protocol.message import PageMessage, ServerMessage
+
+
+class OpenEditor(PageMessage):
+    """A request to edit the workspace that contains a file of a description or of a finding."""
+
+    file: str
+
+
+class EditorOpened(ServerMessage):
+    """The workspace that the page may edit; response to `OpenEditor`.
+
+    `folder` is its folder, and `uri` the folder's URI for the language server. `why_not` is the reason if nothing can
+    be edited, or else empty.
+    """
+
+    folder: str
+    uri: str
+    why_not: str
+
+
+class AskSourceFile(PageMessage):
+    """A request for a file, and for its changes from now on."""
+
+    path: str
+
+
+class LeaveSourceFile(PageMessage):
+    """A notice that the page no longer needs the changes of a file."""
+
+    path: str
+
+
+class SourceFile(ServerMessage):
+    """A file as it is on the disk; response to `AskSourceFile`, sent again when another program changes the file.
+
+    `version` counts the contents that the page was sent. `text` is None if the file cannot be read, and `why_not` is
+    the reason if it cannot be read or must not be written, or else empty.
+    """
+
+    NEWEST_OF: ClassVar[tuple[str, ...]] = ("path",)
+
+    path: str
+    uri: str
+    version: int
+    text: str | None
+    why_not: str
+
+
+class WriteSourceFile(PageMessage):
+    """A request to write a file that has not changed since the page was sent this `version` of it."""
+
+    number: int
+    path: str
+    version: int
+    text: str
+
+
+class CreateSourceFile(PageMessage):
+    """A request to create an empty file, together with the folders above it."""
+
+    number: int
+    path: str
+
+
+class SourceFileWritten(ServerMessage):
+    """The result of `WriteSourceFile` or `CreateSourceFile` with this number.
+
+    `version` is the new version of the file. `refusal` is the reason if the file was not written, or else None.
+    """
+
+    NEWEST_OF: ClassVar[tuple[str, ...]] = ("number",)
+
+    number: int
+    path: str
+    version: int
+    refusal: DiagnosticItem | None
+
+
+class AskSourceFolder(PageMessage):
+    """A request for the names in a folder of the workspace."""
+
+    path: str
+
+
+class SourceFolder(ServerMessage):
+    """The names of the folders and of the files of text in a folder; response to `AskSourceFolder`."""
+
+    NEWEST_OF: ClassVar[tuple[str, ...]] = ("path",)
+
+    path: str
+    folders: list[str]
+    files: list[str]
+
+
+class AskLanguageServer(PageMessage):
+    """A message of the Language Server Protocol to the page's language server, as JSON."""
+
+    content: str
+
+
+class LanguageServerAnswer(ServerMessage):
+    """A message of the Language Server Protocol from the page's language server, as JSON.
+
+    `number` counts the messages, none of which replaces another.
+    """
+
+    NEWEST_OF: ClassVar[tuple[str, ...]] = ("number",)
+
+    number: int
+    content: str
+
+
+class LanguageServerEnded(ServerMessage):
+    """A notice that the page's language server has ended unexpectedly; the next `OpenEditor` starts another one."""

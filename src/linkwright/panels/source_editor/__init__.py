@@ -1,0 +1,1 @@
+"""The editor of source files in the page."""

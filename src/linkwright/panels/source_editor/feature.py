@@ -1,0 +1,230 @@
+"""The editor of source files: sends pages the files of the workspace, writes them, and runs language servers."""
+
+from __future__ import annotations
+
+import asyncio
+from dataclasses import dataclass, field
+from importlib.util import find_spec
+from itertools import count
+from pathlib import Path
+from typing import Any
+
+from linkwright.descriptions.editing import EditRefusedError
+from linkwright.descriptions.editing.refusals import changed_file
+from linkwright.diagnostics import Diagnostic, Phrase, phrase
+from linkwright.diagnostics.extras import EXTRAS, install_hint
+from linkwright.page.audience import Page
+from linkwright.page.protocol import source_editor as messages
+from linkwright.page.protocol.message import PageMessage
+from linkwright.panels.description import DescriptionFeature, item_of
+from linkwright.panels.editing.feature import EditingFeature, elsewhere
+from linkwright.panels.page_feature import FeatureHost, PageFeature
+from linkwright.panels.source_editor.files import FileContent, SourceFiles
+from linkwright.panels.source_editor.language_process import LanguageProcess
+
+_PERIOD = 0.4
+"""Seconds between two looks at the files on the disk."""
+
+
+@dataclass(slots=True)
+class _OpenFile:
+    """A file that a page edits: its content on the disk, and the version number that the page knows it by."""
+
+    version: int
+    content: FileContent
+    stamp: tuple[int, ...]
+
+
+@dataclass(slots=True)
+class _Editor:
+    """The editor of one page."""
+
+    files: SourceFiles
+    process: LanguageProcess
+    open_files: dict[str, _OpenFile] = field(default_factory=dict)
+
+
+class SourceEditorFeature(PageFeature):
+    """Gives each page that edits source files a language server, and the files of the workspace.
+
+    Requests about files are handled one after the other. Written files are steps of the history of `EditingFeature`, so
+    they are undone in the same order as the edits of the robot.
+    """
+
+    def __init__(self, viewer: FeatureHost) -> None:
+        super().__init__(viewer)
+        self._editors: dict[Page, _Editor] = {}
+        self._waiting: asyncio.Queue[tuple[Page, PageMessage]] = asyncio.Queue()
+        self._tasks: list[asyncio.Task[None]] = []
+
+    def receive(self, page: Page, message: Any) -> None:
+        """Pass on a message for the language server, or queue a request about files."""
+        if isinstance(message, messages.AskLanguageServer):
+            if (editor := self._editors.get(page)) is not None:
+                editor.process.send(message.content)
+            return
+        self._waiting.put_nowait((page, message))
+        if not self._tasks:
+            loop = asyncio.get_running_loop()
+            self._tasks = [loop.create_task(self._work()), loop.create_task(self._watch())]
+
+    def page_closed(self, page: Page) -> None:
+        """End the language server of a page."""
+        editor = self._editors.pop(page, None)
+        if editor is not None:
+            editor.process.close()
+
+    def close(self) -> None:
+        """End all language servers, and stop handling requests."""
+        for task in self._tasks:
+            task.cancel()
+        for page in list(self._editors):
+            self.page_closed(page)
+
+    async def _work(self) -> None:
+        while True:
+            page, message = await self._waiting.get()
+            if page not in self.context.pages:
+                continue
+            try:
+                await self._do(page, message)
+            except Exception as error:  # noqa: BLE001  # editing must continue after an error of this program
+                self.context.node.get_logger().error(f"A source file: {type(error).__name__}: {error}")
+
+    async def _do(self, page: Page, message: Any) -> None:
+        if isinstance(message, messages.OpenEditor):
+            page.send(self._open(page, message.file))
+            return
+        editor = self._editors.get(page)
+        if editor is None:
+            return
+        if isinstance(message, messages.AskSourceFile):
+            editor.files.known = self._known(page)
+            await self._send_file(page, editor, message.path)
+        elif isinstance(message, messages.LeaveSourceFile):
+            editor.open_files.pop(message.path, None)
+        elif isinstance(message, messages.AskSourceFolder):
+            folders, files = await asyncio.to_thread(editor.files.names, Path(message.path))
+            page.send(messages.SourceFolder(message.path, folders, files))
+        else:
+            refusal: Diagnostic | None = None
+            try:
+                await self._change(page, editor, message)
+            except EditRefusedError as error:
+                refusal = error.diagnostic
+            open_file = editor.open_files.get(message.path)
+            version = 0 if open_file is None else open_file.version
+            item = None if refusal is None else item_of(refusal)
+            page.send(messages.SourceFileWritten(message.number, message.path, version, item))
+            if open_file is not None and _differs(message, open_file, refusal):
+                await self._send_file(page, editor, message.path)
+
+    def _open(self, page: Page, file: str) -> messages.EditorOpened:
+        """Start the language server of a page, unless it runs or nothing can be edited."""
+        known = self._known(page)
+        why_not = _refusal_reason(page, file, known)
+        if why_not is not None:
+            self.page_closed(page)
+            return messages.EditorOpened("", "", why_not)
+        files = SourceFiles(Path(file), known)
+        editor = self._editors.get(page)
+        if editor is None:
+            self._editors[page] = _Editor(files, self._process(page))
+        else:
+            editor.files = files
+        return messages.EditorOpened(str(files.folder), files.folder.as_uri(), "")
+
+    def _known(self, page: Page) -> frozenset[str]:
+        return frozenset(self.viewer.add_feature(DescriptionFeature).files(page))
+
+    def _process(self, page: Page) -> LanguageProcess:
+        numbers = count(1)
+
+        def ended() -> None:
+            self.page_closed(page)
+            page.send(messages.LanguageServerEnded())
+
+        return LanguageProcess(
+            page.language, lambda content: page.send(messages.LanguageServerAnswer(next(numbers), content)), ended
+        )
+
+    async def _send_file(self, page: Page, editor: _Editor, path: str) -> None:
+        """Send a page a file, and remember its content."""
+        stamp, content = await asyncio.to_thread(_read, editor.files, path)
+        open_file = editor.open_files.get(path)
+        if open_file is None:
+            open_file = editor.open_files[path] = _OpenFile(1, content, stamp)
+        open_file.stamp = stamp
+        if content != open_file.content:
+            open_file.version += 1
+            open_file.content = content
+        uri = Path(path).as_uri() if Path(path).is_absolute() else ""
+        page.send(messages.SourceFile(path, uri, open_file.version, content.page_text, content.why_not))
+
+    async def _change(
+        self, page: Page, editor: _Editor, message: messages.WriteSourceFile | messages.CreateSourceFile
+    ) -> None:
+        """Write or create a file.
+
+        Raises:
+            EditRefusedError: the file was not written.
+        """
+        path = Path(message.path)
+        if isinstance(message, messages.CreateSourceFile):
+            await asyncio.to_thread(editor.files.create, path)
+            return
+        open_file = editor.open_files.get(message.path)
+        if open_file is None or open_file.version != message.version or open_file.content.text is None:
+            raise EditRefusedError(changed_file(message.path))
+        plan = editor.files.plan(path, open_file.content.text, message.text)
+        await self.viewer.add_feature(EditingFeature).write(plan)
+        open_file.version += 1
+        open_file.stamp, open_file.content = await asyncio.to_thread(_read, editor.files, message.path)
+
+    async def _watch(self) -> None:
+        """Send pages the files that other programs have changed."""
+        while True:
+            await asyncio.sleep(_PERIOD)
+            for page, editor in list(self._editors.items()):
+                stamps = {path: known.stamp for path, known in editor.open_files.items()}
+                changed = await asyncio.to_thread(_changed, stamps)
+                for path in changed:
+                    self._waiting.put_nowait((page, messages.AskSourceFile(path)))
+
+
+def _differs(message: PageMessage, open_file: _OpenFile, refusal: Diagnostic | None) -> bool:
+    """Return whether a file that a page wrote differs from its text, because its encoding lacks some characters."""
+    is_written = isinstance(message, messages.WriteSourceFile) and open_file.content.page_text == message.text
+    return refusal is not None or not is_written
+
+
+def _read(files: SourceFiles, path: str) -> tuple[tuple[int, ...], FileContent]:
+    """Return a stamp of a file, taken before its content, and the content."""
+    return _stamp(path), files.read(Path(path))
+
+
+def _stamp(path: str) -> tuple[int, ...]:
+    """Return numbers that change with the content of a file; nothing if there is no file."""
+    try:
+        status = Path(path).stat()
+    except (OSError, ValueError):
+        return ()
+    return status.st_ino, status.st_size, status.st_mtime_ns, status.st_mode
+
+
+def _changed(stamps: dict[str, tuple[int, ...]]) -> list[str]:
+    """Return the paths of the files that no longer have their stamps."""
+    return [path for path, stamp in stamps.items() if _stamp(path) != stamp]
+
+
+def _refusal_reason(page: Page, file: str, known: frozenset[str]) -> Phrase | None:
+    """Return why a page may not edit the workspace of a file, or None."""
+    if not page.is_here:
+        return elsewhere().message
+    if find_spec(EXTRAS["lsp"]) is None:
+        return phrase("the editor needs the language server: {hint}", hint=install_hint("lsp"))
+    if file not in known or file.startswith("<"):
+        return phrase(
+            "this description was received as text, so its file is unknown: open it with `linkwright view FILE`"
+        )
+    return None

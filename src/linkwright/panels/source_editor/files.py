@@ -1,0 +1,195 @@
+"""The source files that a page edits: which it may read and write, and their texts with the line end LF."""
+
+from __future__ import annotations
+
+import os
+import re
+from dataclasses import dataclass
+from itertools import takewhile
+from pathlib import Path
+
+from linkwright.descriptions.editing import EditPlan, EditRefusedError, Workspace
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, display_path, foreign, phrase
+from linkwright.xmltree.decoding import decode
+from linkwright.xmltree.reader import read_bytes
+
+MAX_BYTES = 400_000
+"""Length of the longest file that is edited, because pages send a text as one message."""
+
+_MAX_NAMES = 2000
+"""In a folder."""
+
+_GENERATED = frozenset({"build", "install", "log", "node_modules", "__pycache__"})
+"""Names of folders whose files are generated."""
+
+_BINARY = re.compile(
+    r"7z|bag|bin|blend|bmp|bz2|db3|dll|exe|gif|glb|gz|jpe?g|mcap|mp4|np[yz]|o|onnx|pcd|pdf|png|ply|pt|py[cd]|so|"
+    r"stl|tar|tga|tiff?|ttf|wav|webp|whl|woff2?|xz|zip",
+    re.IGNORECASE,
+)
+"""The suffixes of files that are not text."""
+_LINE_END = re.compile(r"\r\n?|\n")
+
+
+@dataclass(frozen=True, slots=True)
+class FileContent:
+    """The content of a file on the disk.
+
+    Attributes:
+        text: the text with the file's line ends; None if the file cannot be read.
+        why_not: why the file cannot be read or must not be written; empty if it may be edited.
+    """
+
+    text: str | None
+    why_not: str = ""
+
+    @property
+    def page_text(self) -> str | None:
+        """The text with the line end LF."""
+        return None if self.text is None else _LINE_END.sub("\n", self.text)
+
+
+class SourceFiles:
+    """The files of a workspace, for an editor.
+
+    Readable are the files of the workspace, those of any package, and those of the shown descriptions, except hidden
+    ones. Writable are those that edits of the robot may write.
+
+    Args:
+        main: a file of the workspace.
+        known: the files of the shown descriptions.
+
+    Attributes:
+        known: the files of the shown descriptions.
+    """
+
+    def __init__(self, main: Path, known: frozenset[str] = frozenset()) -> None:
+        self.known = known
+        self._workspace = Workspace(main)
+
+    @property
+    def folder(self) -> Path:
+        """The folder of the workspace."""
+        return self._workspace.folder
+
+    def read(self, path: Path) -> FileContent:
+        """Return the content of a file."""
+        why_not = self._reading_refusal(path)
+        if why_not is not None:
+            return FileContent(None, why_not)
+        try:
+            data = read_bytes(path)
+            text = decode(data, str(path))
+        except LinkwrightError as error:
+            return FileContent(None, error.diagnostics[0].message)
+        if len(data) > MAX_BYTES:
+            return FileContent(text, _too_long(path))
+        refusal = self._workspace.refusal(os.path.realpath(path))
+        return FileContent(text, "" if refusal is None else refusal.message)
+
+    def plan(self, path: Path, before: str, text: str) -> EditPlan:
+        """Return the edit that writes a new text to a file.
+
+        Args:
+            path: the file.
+            before: the text of the file, with its line ends.
+            text: the new text, with the line end LF.
+
+        Raises:
+            EditRefusedError: the file must not be written.
+        """
+        real = os.path.realpath(path)
+        why_not = self._reading_refusal(path)
+        refusal = Diagnostic("EDIT106", why_not) if why_not is not None else self._workspace.refusal(real)
+        if refusal is not None:
+            raise EditRefusedError(refusal)
+        return EditPlan({real: with_line_ends(text, before)}, {real: before})
+
+    def create(self, path: Path) -> None:
+        """Create an empty file in the workspace, with the folders above it.
+
+        Raises:
+            EditRefusedError: the file exists or is outside of the workspace, or it cannot be created.
+        """
+        real = Path(os.path.realpath(path))
+        if not real.is_relative_to(self.folder) or _is_hidden(real, self.folder):
+            why_not = phrase("new files are created in '{folder}' only", folder=str(self.folder))
+            raise EditRefusedError(Diagnostic("EDIT106", why_not))
+        existing = next(folder for folder in real.parents if folder.is_dir())
+        refusal = self._workspace.refusal(str(existing))
+        if refusal is not None:
+            raise EditRefusedError(refusal)
+        try:
+            real.parent.mkdir(parents=True, exist_ok=True)
+            real.open("x").close()
+        except FileExistsError:
+            message = phrase("'{path}' exists already", path=display_path(real))
+            raise EditRefusedError(Diagnostic("EDIT108", message)) from None
+        except OSError as error:
+            reason = foreign(error.strerror or error)
+            message = phrase("cannot write '{path}': {reason}", path=display_path(real), reason=reason)
+            raise EditRefusedError(Diagnostic("EDIT108", message)) from None
+
+    def names(self, folder: Path) -> tuple[list[str], list[str]]:
+        """Return the sorted names of the folders and of the files of text in a folder of the workspace.
+
+        Hidden and generated folders are omitted, as well as files whose suffix is that of a binary format.
+        """
+        real = Path(os.path.realpath(folder))
+        if not real.is_relative_to(self.folder) or _is_hidden(real, self.folder):
+            return [], []
+        try:
+            entries = [entry for entry in os.scandir(real) if not entry.name.startswith(".")]
+        except OSError:
+            return [], []
+        folders = [entry.name for entry in entries if entry.is_dir() and entry.name not in _GENERATED]
+        files = [
+            entry.name for entry in entries if entry.is_file() and not _BINARY.fullmatch(entry.name.rpartition(".")[2])
+        ]
+        return sorted(folders, key=str.lower)[:_MAX_NAMES], sorted(files, key=str.lower)[:_MAX_NAMES]
+
+    def _reading_refusal(self, path: Path) -> Phrase | None:
+        """Return why a file must not be read, or None."""
+        real = Path(os.path.realpath(path))
+        if str(path) in self.known:
+            return None
+        packages = (folder for folder in real.parents if (folder / "package.xml").is_file())
+        if any(real.is_relative_to(folder) and not _is_hidden(real, folder) for folder in (self.folder, *packages)):
+            return None
+        name, folder = display_path(path), str(self.folder)
+        return phrase("'{path}' is outside the workspace '{folder}'", path=name, folder=folder)
+
+
+def _too_long(path: Path) -> Phrase:
+    return phrase(
+        "'{path}' is longer than {count} bytes, so it is not edited", path=display_path(path), count=MAX_BYTES
+    )
+
+
+def _is_hidden(path: Path, folder: Path) -> bool:
+    """Return whether a path has a hidden name below a folder that contains it."""
+    return any(part.startswith(".") for part in path.relative_to(folder).parts)
+
+
+def with_line_ends(text: str, before: str) -> str:
+    """Return a text with the line ends of the file's former text.
+
+    Lines before and after the changed ones keep their line ends; the changed ones get that of most lines.
+
+    Args:
+        text: the new text, with the line end LF.
+        before: the former text, with the file's line ends.
+    """
+    ends = _LINE_END.findall(before)
+    if not any(end != "\n" for end in ends):
+        return text
+    usual = max(set(ends), key=ends.count)
+    old, new = _LINE_END.split(before), text.split("\n")
+    first = len(list(takewhile(lambda pair: pair[0] == pair[1], zip(old, new, strict=False))))
+    same_end = zip(reversed(old[first:]), reversed(new[first:]), strict=False)
+    last = len(list(takewhile(lambda pair: pair[0] == pair[1], same_end)))
+    count = len(new) - 1
+    kept_after = max(0, last - 1)
+    kept_before = min(first, len(ends) - kept_after, count - kept_after)
+    new_ends = ends[:kept_before] + [usual] * (count - kept_before - kept_after) + ends[len(ends) - kept_after :]
+    return "".join(line + end for line, end in zip(new, [*new_ends, ""], strict=True))

@@ -1,0 +1,92 @@
+"""A language server for one page, in a process of its own, so that its work does not delay the viewer."""
+
+from __future__ import annotations
+
+import asyncio
+import re
+import subprocess
+import sys
+import threading
+from collections.abc import Callable
+from contextlib import suppress
+from queue import SimpleQueue
+from typing import IO
+
+_LENGTH = re.compile(rb"Content-Length: *(\d+)", re.IGNORECASE)
+_MAX_HEADER_LINES = 10
+
+
+class LanguageProcess:
+    """The language server of a page.
+
+    Args:
+        language: the language of its texts, one of `LANGUAGES`; None for that of the environment.
+        receive: called on the event loop with each message of the server, as JSON.
+        ended: called on the event loop when the server has ended without `close`.
+
+    Raises:
+        OSError: the process cannot be started.
+    """
+
+    def __init__(self, language: str | None, receive: Callable[[str], object], ended: Callable[[], object]) -> None:
+        options = () if language is None else ("--lang", language)
+        self._process = subprocess.Popen(  # noqa: S603 - our own program
+            [sys.executable, "-m", "linkwright", *options, "lsp", "--stdio"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+        )
+        assert self._process.stdin is not None, "it is a pipe"
+        assert self._process.stdout is not None, "it is a pipe"
+        self._loop = asyncio.get_running_loop()
+        self._is_closed = False
+        self._waiting: SimpleQueue[str | None] = SimpleQueue()
+        work = ((self._write, (self._process.stdin,)), (self._read, (self._process.stdout, receive, ended)))
+        self._threads = [threading.Thread(target=target, args=arguments, daemon=True) for target, arguments in work]
+        for thread in self._threads:
+            thread.start()
+
+    def send(self, content: str) -> None:
+        """Send the server a message, given as JSON; messages wait until the server has started."""
+        self._waiting.put(content)
+
+    def close(self) -> None:
+        """End the server, which has nothing to save."""
+        self._is_closed = True
+        self._process.kill()
+        self._waiting.put(None)
+        self._process.wait()
+        for thread in self._threads:
+            thread.join()
+
+    def _write(self, requests: IO[bytes]) -> None:
+        with suppress(OSError), requests:  # the reader notices this too
+            while (message := self._waiting.get()) is not None:
+                content = message.encode()
+                requests.write(b"Content-Length: %d\r\n\r\n%b" % (len(content), content))
+                requests.flush()
+
+    def _read(self, answers: IO[bytes], receive: Callable[[str], object], ended: Callable[[], object]) -> None:
+        with answers:
+            while (content := _message(answers)) is not None:
+                self._call(receive, content)
+        self._call(ended)
+
+    def _call(self, callback: Callable[..., object], *arguments: object) -> None:
+        """Call a function on the event loop, unless the server was closed."""
+        with suppress(RuntimeError):  # the loop has ended
+            self._loop.call_soon_threadsafe(lambda: self._is_closed or callback(*arguments))
+
+
+def _message(answers: IO[bytes]) -> str | None:
+    """Return the next message of a language server; None if there is no other."""
+    length = None
+    for _ in range(_MAX_HEADER_LINES):
+        line = answers.readline()
+        found = _LENGTH.match(line)
+        length = found or length
+        if line in (b"\r\n", b""):
+            break
+    if length is None:
+        return None
+    return answers.read(int(length[1])).decode(errors="replace")

@@ -1,0 +1,206 @@
+"""The files of a robot are edited in the page: with findings and names, saved, and told of other programs' changes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.browser.axe import violations
+from tests.browser.conftest import becomes, until
+from tests.browser.test_description import open_panel
+from tests.browser.test_editing import number, type_in
+
+pytestmark = pytest.mark.browser
+
+ROBOT = """\
+<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:include filename="leg.xacro"/>
+  <link name="base"><visual><geometry><box size="1 1 0.2"/></geometry></visual></link>
+  <xacro:leg name="left"/>
+</robot>
+"""
+LEG = """\
+<robot xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:macro name="leg" params="name">
+    <link name="${name}"><visual><geometry><box size="0.1 0.1 0.6"/></geometry></visual></link>
+    <joint name="${name}_joint" type="fixed"><parent link="base"/><child link="${name}"/></joint>
+  </xacro:macro>
+</robot>
+"""
+EDITOR = "lw.panels.source.editor"
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    package = tmp_path / "leg_description"
+    package.mkdir()
+    (package / "package.xml").write_text(
+        '<package format="3"><name>leg_description</name><version>1.0.0</version><description>A leg.</description>'
+        '<maintainer email="a@b.org">A</maintainer><license>MIT</license></package>\n'
+    )
+    (package / "leg.xacro").write_text(LEG)
+    path = package / "robot.urdf.xacro"
+    path.write_text(ROBOT)
+    return path
+
+
+def open_editor(page):
+    """Open the editor with the main file, and put the cursor at its beginning."""
+    open_panel(page, "Source")
+    page.get_by_role("button", name="Edit", exact=True).click()
+    until(page, f"{EDITOR}.file?.endsWith('robot.urdf.xacro')")
+    text = page.locator(".cm-content")
+    text.click(position={"x": 30, "y": 8})
+    text.press("Control+Home")
+    return text
+
+
+def shows(page, line: str) -> None:
+    """Wait until the editor has this text somewhere."""
+    page.wait_for_function("part => window.linkwright.panels.source.editor.text?.includes(part)", arg=line, polling=50)
+
+
+def go_to(text, line: int, column: int = 0) -> None:
+    """Put the cursor on a line, from the beginning of the text."""
+    text.press("Control+Home")
+    for _ in range(line - 1):
+        text.press("ArrowDown")
+    for _ in range(column):
+        text.press("ArrowRight")
+
+
+def test_a_file_is_edited_saved_and_the_robot_follows(start, open_page, file):
+    page = open_page(start("view", str(file)))
+    text = open_editor(page)
+    go_to(text, 4)
+    text.press("End")
+    page.keyboard.insert_text('\n  <xacro:leg name="right"/>')
+    until(page, f"{EDITOR}.unsaved.length === 1")
+    text.press("Control+s")
+    page.get_by_text("Saved: robot.urdf.xacro").wait_for()
+    becomes(file.read_text, ROBOT.replace("</robot>", '  <xacro:leg name="right"/>\n</robot>'))
+    until(page, "lw.frames.right !== undefined")
+    text.press("Control+z")
+    page.locator(".editor-bar").get_by_role("button", name="Save", exact=True).click()
+    becomes(file.read_text, ROBOT)
+
+
+def test_a_change_on_the_disk_is_merged_or_told_and_nothing_is_lost(start, open_page, file):
+    page = open_page(start("view", str(file)))
+    text = open_editor(page)
+    go_to(text, 1)
+    text.press("End")
+    page.keyboard.insert_text("<!-- mine -->")
+    file.write_text(ROBOT.replace("0.2", "0.3"))
+    shows(page, "1 1 0.3")
+    shows(page, "<!-- mine -->")
+    until(page, f"!{EDITOR}.isConflict && {EDITOR}.unsaved.length === 1")
+
+    file.write_text(ROBOT.replace('wiki/xacro">', 'wiki/xacro"><!-- theirs -->'))
+    until(page, f"{EDITOR}.isConflict")
+    page.get_by_role("button", name="Take the file").click()
+    shows(page, "<!-- theirs -->")
+    text.press("Control+z")
+    shows(page, "<!-- mine -->")
+    text.press("Control+s")
+    becomes(file.read_text, ROBOT.replace("0.2", "0.3").replace('wiki/xacro">', 'wiki/xacro"><!-- mine -->'))
+
+
+def test_an_edit_of_the_robot_and_a_saved_text_have_one_history(start, open_page, file):
+    page = open_page(start("view", str(file)))
+    text = open_editor(page)
+    page.get_by_role("tab", name="Links").click()
+    page.get_by_text("left", exact=True).locator("visible=true").first.click()
+    page.get_by_role("button", name="Move and rotate the joint").click()
+    becomes(lambda: number(page, "xyz2").input_value(), "0")
+    type_in(page, "xyz2", "0.4")
+    page.get_by_role("button", name="Write", exact=True).click()
+    leg = file.parent / "leg.xacro"
+    becomes(lambda: "0.4" in leg.read_text(), True)
+    page.locator(".panel-tab", has_text="Source").first.click()
+    shows(page, "0.4")
+    text.click(position={"x": 30, "y": 8})
+    text.press("Control+z")
+    text.press("Control+s")
+    becomes(leg.read_text, LEG)
+
+    page.locator(".panel-tab", has_text="Edit robot").first.click()
+    undo = page.get_by_role("button", name="Undo the last written edit")
+    undo.click()
+    becomes(lambda: "0.4" in leg.read_text(), True)
+    undo.click()
+    becomes(leg.read_text, LEG)
+
+
+def test_findings_completion_hover_definition_and_rename(start, open_page, file):
+    page = open_page(start("view", str(file)))
+    text = open_editor(page)
+    go_to(text, 4, 9)  # in xacro:leg
+    text.press("F12")
+    until(page, f"{EDITOR}.file.endsWith('leg.xacro') && {EDITOR}.cursor === 2")
+    text.press("Control+Home")
+    go_to(text, 2, 23)  # in the name of the macro
+    text.press("F2")
+    name = page.get_by_role("textbox", name="New name")
+    name.fill("limb")
+    name.press("Enter")
+    page.get_by_text("Renamed to limb in 2 files, not saved yet").wait_for()
+    page.get_by_role("button", name="Save 2 files").click()
+    becomes(file.read_text, ROBOT.replace("xacro:leg", "xacro:limb"))
+    becomes((file.parent / "leg.xacro").read_text, LEG.replace('"leg"', '"limb"'))
+
+    go_to(text, 3)
+    text.press("End")
+    page.keyboard.type("\n<in", delay=20)
+    page.locator(".cm-tooltip-autocomplete li").filter(has_text="inertial").first.wait_for()
+    text.press("Escape")
+    for _ in range(3):
+        text.press("Backspace")
+    page.keyboard.insert_text('<link name="${nam}"/>')
+    until(page, f"{EDITOR}.findings.includes('XAC201')")
+    page.locator(".cm-lintRange").first.wait_for()
+    text.press("Control+Home")
+    text.press("F8")
+    until(page, f"{EDITOR}.cursor === 4")
+    page.locator(".cm-line").nth(1).get_by_text("macro", exact=False).first.hover()
+    page.locator(".cm-lsp-hover-tooltip").wait_for()
+
+
+def test_a_file_is_created_in_the_tree_and_the_keyboard_leaves_the_editor(start, open_page, file):
+    page = open_page(start("view", str(file)))
+    text = open_editor(page)
+    page.get_by_role("button", name="Files", exact=True).click()
+    page.get_by_role("treeitem", name="leg.xacro").click()
+    until(page, f"{EDITOR}.file.endsWith('leg.xacro')")
+    page.get_by_role("button", name="New file").click()
+    name = page.get_by_role("textbox", name="Path of the new file")
+    name.fill("config/legs.yaml")
+    name.press("Enter")
+    until(page, f"{EDITOR}.file.endsWith('config/legs.yaml')")
+    page.get_by_role("treeitem", name="legs.yaml").wait_for()
+    text.click(position={"x": 30, "y": 8})
+    page.keyboard.insert_text("legs: 2\n")
+    text.press("Control+s")
+    becomes((file.parent / "config" / "legs.yaml").read_text, "legs: 2\n")
+
+    text.press("Tab")
+    shows(page, "legs: 2\n  ")
+    text.press("Escape")
+    text.press("Tab")
+    page.wait_for_function("!document.activeElement.closest('.cm-editor')")
+
+
+def test_the_editor_is_accessible(start, open_page, file):
+    page = open_page(start("view", str(file)))
+    text = open_editor(page)
+    page.get_by_role("button", name="Files", exact=True).click()
+    go_to(text, 3)
+    text.press("End")
+    page.keyboard.insert_text('<link name="${nam}"/>')
+    until(page, f"{EDITOR}.findings.includes('XAC201')")
+    page.locator(".editor-bar").get_by_role("button", name="1 finding").click()
+    text.press("Control+f")
+    page.locator(".cm-search").wait_for()
+    assert violations(page, ".source-panel") == []
+    assert page.evaluate("document.body.scrollHeight <= document.body.clientHeight")

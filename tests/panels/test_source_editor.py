@@ -1,0 +1,172 @@
+"""The editor of source files: what it reads and writes, and its language server."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from linkwright.descriptions import examine
+from linkwright.diagnostics import extras
+from linkwright.page.audience import Page
+from linkwright.panels.source_editor.files import SourceFiles, with_line_ends
+from tests.viewer.scene import ARM, page, world
+
+ROBOT = '<robot name="r">\n  <link name="base"/>\n</robot>\n'
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    package = tmp_path / "ws" / "src" / "arm_description"
+    (package / "urdf").mkdir(parents=True)
+    (package / "package.xml").write_text("<package/>")
+    path = package / "urdf" / "arm.urdf"
+    path.write_text(ROBOT)
+    return path
+
+
+def content(path: Path) -> bytes:
+    return path.read_bytes()
+
+
+def write(path: Path, text: str) -> None:
+    path.write_text(text)
+
+
+async def ask(client: Any, kind: str, answer: str, **fields: Any) -> dict[str, Any]:
+    await client.send(kind, **fields)
+    found: dict[str, Any] = await client.until(answer)
+    return found
+
+
+async def opened(scene: Any, client: Any, file: Path) -> dict[str, Any]:
+    scene.describe(scene.library.store(examine(file)))
+    await client.until("description_changed")
+    return await ask(client, "open_editor", "editor_opened", file=str(file))
+
+
+async def save(client: Any, path: Path, version: int, text: str) -> dict[str, Any]:
+    return await ask(
+        client, "write_source_file", "source_file_written", number=version, path=str(path), version=version, text=text
+    )
+
+
+async def test_a_file_is_read_and_written_and_the_edit_of_the_robot_is_undone_after_it(file: Path) -> None:
+    async with world() as scene, page(scene.viewer) as client:
+        answer = await opened(scene, client, file)
+        assert (answer["folder"], answer["why_not"]) == (str(file.parents[3]), "")
+        shown = await ask(client, "ask_source_file", "source_file", path=str(file))
+        assert (shown["text"], shown["version"], shown["why_not"]) == (ROBOT, 1, "")
+        assert shown["uri"] == file.as_uri()
+        written = await save(client, file, 1, ROBOT.replace("base", "body"))
+        assert (written["refusal"], written["version"]) == (None, 2)
+        assert content(file) == ROBOT.replace("base", "body").encode()
+        undone = await ask(client, "undo_edit", "edit_written")
+        assert undone["files"] == [str(file)]
+        assert content(file) == ROBOT.encode()
+        assert (await client.until("source_file"))["text"] == ROBOT
+
+
+async def test_a_change_on_the_disk_is_sent_and_not_overwritten(file: Path) -> None:
+    async with world() as scene, page(scene.viewer) as client:
+        await opened(scene, client, file)
+        await ask(client, "ask_source_file", "source_file", path=str(file))
+        write(file, ROBOT + "<!-- theirs -->")
+        refused = await save(client, file, 1, "mine")
+        assert refused["refusal"]["code"] == "EDIT107"
+        assert content(file) == (ROBOT + "<!-- theirs -->").encode()
+        shown = await client.until("source_file", version=2)
+        assert shown["text"] == ROBOT + "<!-- theirs -->"
+        assert (await save(client, file, 2, "mine"))["refusal"] is None
+        assert content(file) == b"mine"
+
+
+async def test_the_folder_is_listed_and_a_file_is_created(file: Path) -> None:
+    folder = file.parents[1]
+    (folder / "build").mkdir()
+    (folder / ".git").mkdir()
+    (folder / "arm.stl").write_bytes(b"")
+    async with world() as scene, page(scene.viewer) as client:
+        await opened(scene, client, file)
+        listed = await ask(client, "ask_source_folder", "source_folder", path=str(folder))
+        assert (listed["folders"], listed["files"]) == (["urdf"], ["package.xml"])
+        new = folder / "config" / "arm.yaml"
+        created = await ask(client, "create_source_file", "source_file_written", number=1, path=str(new))
+        assert created["refusal"] is None
+        assert content(new) == b""
+        again = await ask(client, "create_source_file", "source_file_written", number=2, path=str(new))
+        assert "exists already" in again["refusal"]["message"]
+
+
+@pytest.mark.parametrize("path", ["/etc/passwd", "{ws}/.git/config", "{ws}/../outside.txt"])
+async def test_other_files_are_neither_read_nor_created(file: Path, path: str) -> None:
+    workspace = file.parents[3]
+    (workspace / ".git").mkdir()
+    (workspace / ".git" / "config").write_text("secret")
+    path = path.format(ws=workspace)
+    async with world() as scene, page(scene.viewer) as client:
+        await opened(scene, client, file)
+        shown = await ask(client, "ask_source_file", "source_file", path=path)
+        assert shown["text"] is None
+        assert "outside the workspace" in shown["why_not"]
+        created = await ask(client, "create_source_file", "source_file_written", number=1, path=path + "x")
+        assert created["refusal"]["code"] == "EDIT106"
+        assert (await ask(client, "ask_source_folder", "source_folder", path=str(Path(path).parent)))["files"] == []
+
+
+def test_a_link_out_of_the_workspace_is_not_followed(file: Path, tmp_path: Path) -> None:
+    (tmp_path / "secret.txt").write_text("secret")
+    link = file.parent / "link.txt"
+    link.symlink_to(tmp_path / "secret.txt")
+    assert SourceFiles(file).read(link).text is None
+
+
+async def test_a_page_elsewhere_edits_nothing(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Page, "is_here", False, raising=False)
+    monkeypatch.setattr("linkwright.page.server._is_from_here", lambda _: False)
+    async with world() as scene, page(scene.viewer) as client:
+        answer = await opened(scene, client, file)
+        assert "only from pages that are open on the machine" in answer["why_not"]
+
+
+async def test_without_the_extra_the_page_is_told_how_to_get_it(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(extras.EXTRAS, "lsp", "no_such_module")
+    async with world() as scene, page(scene.viewer) as client:
+        answer = await opened(scene, client, file)
+        assert answer["why_not"].startswith("the editor needs the language server: run ")
+
+
+async def test_a_description_without_a_file_is_not_edited() -> None:
+    async with world() as scene, page(scene.viewer) as client:
+        scene.describe(ARM)
+        await client.until("description_changed")
+        answer = await ask(client, "open_editor", "editor_opened", file="<robot_description>")
+        assert "linkwright view FILE" in answer["why_not"]
+
+
+async def test_the_language_server_answers_through_the_page(file: Path) -> None:
+    async with world() as scene, page(scene.viewer) as client:
+        answer = await opened(scene, client, file)
+        request = {"jsonrpc": "2.0", "id": 1, "method": "initialize"}
+        params = {"processId": None, "rootUri": answer["uri"], "capabilities": {}}
+        await client.send("ask_language_server", content=json.dumps({**request, "params": params}))
+        reply = json.loads((await client.until("language_server_answer"))["content"])
+        assert reply["id"] == 1
+        assert reply["result"]["capabilities"]["hoverProvider"]
+
+
+@pytest.mark.parametrize(
+    ("before", "text", "after"),
+    [
+        ("a\nb\n", "a\nc\n", "a\nc\n"),
+        ("a\r\nb\r\n", "a\nc\nd\n", "a\r\nc\r\nd\r\n"),
+        ("a\r\nb\nc\r\n", "a\nb\nx\n", "a\r\nb\nx\r\n"),
+        ("a\nb\r\nc\r\nd\r\n", "a\nd\n", "a\nd\r\n"),
+        ("a\rb", "a\nb\nc", "a\rb\rc"),
+        ("a\r\n", "", ""),
+    ],
+)
+def test_lines_keep_their_ends(before: str, text: str, after: str) -> None:
+    assert with_line_ends(text, before) == after
