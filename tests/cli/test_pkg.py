@@ -296,7 +296,7 @@ def test_license_texts_are_complete(identifier: str) -> None:
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        ([], "the package has no license yet, so no LICENSE is written"),
+        ([], "use one of no license yet, so no LICENSE is written"),
         (["--license", "mit"], "no text is known for the license 'mit'"),
         (["--license", "Proprietary"], "no text is known for the license 'Proprietary'"),
     ],

@@ -152,7 +152,7 @@ REFUSED = {
     "its shapes are written with expressions, and numbers in the file would not follow them": """
       <xacro:property name="s" value="1"/>
       <link name="a"><visual><geometry><box size="${s} 1 1"/></geometry></visual></link>""",
-    "its <inertial> is written with expressions": f"""
+    "the <inertial> is written with expressions": f"""
       <link name="a"><inertial><mass value="${{1 + 1}}"/>{ONES}</inertial></link>""",
     "<xacro:heavy> generates a part of it": f"""
       <xacro:macro name="heavy"><inertial><mass value="1"/>{ONES}</inertial></xacro:macro>

@@ -51,7 +51,7 @@ def function(given): pass
 )
 def test_values_of_python_expressions(expression, value):
     python = PythonFile(SourceText("x.py", f"{_PREFACE}result = {expression}\n"))
-    result = python.assigned("result")
+    result = python.assigned_expression("result")
     assert result is not None
     assert python.value(result) == value
 

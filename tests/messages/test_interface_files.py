@@ -366,7 +366,7 @@ class TestIdl:
             ("module a { struct F { long", "MSG120", "a name is expected, but there is the end of the file"),
             ("module a { const octet X = 300; };", "MSG114", "the value of 'X' is wrong"),
             ("module a { struct G { long x; }; };", "MSG118", "does not define the structure 'my_msgs::msg::F'"),
-            ("module a ? {}", "MSG120", "'?' is not expected here"),
+            ("module a ? {}", "MSG120", "unexpected character '?'"),
         ],
     )
     def test_what_is_refused(self, text, code, message):

@@ -182,7 +182,7 @@ def test_an_unknown_package_says_what_was_searched_and_what_is_near(tmp_path: Pa
     assert (diagnostic.hint or "").startswith("did you mean 'turtlebot4_description'")
     assert f"AMENT_PREFIX_PATH: {tmp_path / 'ros'}" in notes
     assert str(tmp_path / "ws" / "src") in notes
-    assert "broken/package.xml, which names no package" in notes
+    assert "broken/package.xml, which does not name a package" in notes
     assert "my_robot_description" in notes
 
 
@@ -287,8 +287,8 @@ class TestResolve:
         ("address", "message"),
         [
             ("package:/arm/a.stl", "lacks the two slashes"),
-            ("package:///a.stl", "names no package"),
-            ("file://a.stl", "has no absolute path"),
+            ("package:///a.stl", "does not name a package"),
+            ("file://a.stl", "does not have an absolute path"),
             ("http://example.org/a.stl", "does not name a local file"),
             ("model://arm/a.stl", "does not name a local file"),
             ("", "is empty"),

@@ -9,7 +9,7 @@ import pytest
 
 from linkwright.diagnostics import LinkwrightError, Severity
 from linkwright.speech.enrolled.enrolment import enrol
-from linkwright.speech.enrolled.words import MOST_TAKES, MOST_WORDS, Words, words_path
+from linkwright.speech.enrolled.words import MAX_TAKES, MAX_WORDS, Words, words_path
 from linkwright.speech.sound.spectra import BANDS
 from tests.speech.voices import WORDS, say
 
@@ -59,9 +59,9 @@ def test_names_of_any_language_are_kept(tmp_path):
 
 def test_only_the_newest_takes_are_kept():
     words = Words()
-    for number in range(MOST_TAKES + 2):
+    for number in range(MAX_TAKES + 2):
         enrol(words, "stop", say(WORDS["stop"], seed=number))
-    assert len(words.takes("stop")) == MOST_TAKES
+    assert len(words.takes("stop")) == MAX_TAKES
 
 
 @pytest.mark.parametrize(
@@ -135,7 +135,7 @@ def test_a_name_that_cannot_be_shown_is_not_taken(name):
 
 def test_there_is_a_most_of_words():
     take = enrolled(("stop",)).takes("stop")
-    words = Words({str(number): take[:1] for number in range(MOST_WORDS)})
+    words = Words({str(number): take[:1] for number in range(MAX_WORDS)})
     assert enrol(words, "more", say(WORDS["stop"]))[0].code == "VOICE204"
     assert enrol(words, "7", say(WORDS["stop"]))[0].code == "VOICE209"
     assert len(words.takes("7")) == 2

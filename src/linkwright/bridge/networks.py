@@ -21,13 +21,13 @@ _JOINED_WITHIN = 10.0
 
 
 @dataclass(frozen=True)
-class _Kind:
+class _NetworkKind:
     """A kind of network.
 
     Attributes:
         label: the name in messages.
-        why_not: returns the reason why this kind is not available, or an empty string if it is.
-        open: creates the transport for a domain and a bridge.
+        unavailable_reason: returns the reason why this kind is not available, or an empty string if it is.
+        open_transport: creates the transport for a domain and a bridge.
         needs_hashes: see `Side`.
     """
 
@@ -47,8 +47,8 @@ def _open_zenoh(domain_id: int | None, _bridge_id: str, logger: Logger) -> Backg
 
 
 _KINDS = {
-    "dds": _Kind("DDS", dds.unavailable_reason, _open_dds, needs_hashes=False),
-    "zenoh": _Kind("Zenoh", zenoh.unavailable_reason, _open_zenoh, needs_hashes=True),
+    "dds": _NetworkKind("DDS", dds.unavailable_reason, _open_dds, needs_hashes=False),
+    "zenoh": _NetworkKind("Zenoh", zenoh.unavailable_reason, _open_zenoh, needs_hashes=True),
 }
 
 

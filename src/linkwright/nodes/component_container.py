@@ -139,7 +139,8 @@ def _unknown(package: str, plugin: str) -> LinkwrightError:
     if near is None and here:
         near = phrase("the package has {names}", names=joined(here))
     hint = near or phrase(
-        "without ROS only the nodes that come with Linkwright can be composed; others are compiled libraries"
+        "without ROS, only the nodes that come with Linkwright can be composed, because other components are "
+        "compiled libraries"
     )
     return LinkwrightError(Diagnostic("NODE601", message, hint=hint))
 

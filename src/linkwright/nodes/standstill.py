@@ -27,5 +27,5 @@ def send_stop(node: Node, publisher: Publisher[Any], lost: EndpointInfo) -> None
         message.header.stamp = node.get_clock().now().to_msg()
     publisher.publish(message)
     node.get_logger().warning(
-        phrase("{who}: a stop is sent to '{topic}'", who=describe_lost_publisher(lost), topic=publisher.name)
+        phrase("{who}: a stop command is sent to '{topic}'", who=describe_lost_publisher(lost), topic=publisher.name)
     )

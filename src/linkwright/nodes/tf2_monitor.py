@@ -8,7 +8,7 @@ from collections.abc import Iterable
 
 from linkwright.graph import STATIC_TF_SUBSCRIPTION_QOS, TF_QOS, Graph, TransformException
 from linkwright.graph.time.values import Time
-from linkwright.graph.transforms.core import BufferCore, nanoseconds_of
+from linkwright.graph.transforms.core import BufferCore, to_nanoseconds
 from linkwright.messages import TFMessage
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node
 
@@ -62,7 +62,7 @@ class Tf2Monitor(SingleNode):
         self._buffer.update(message, static=static)
         total = 0.0
         for transform in message.transforms:
-            delay = (now_ns - nanoseconds_of(transform.header.stamp)) / 1e9
+            delay = (now_ns - to_nanoseconds(transform.header.stamp)) / 1e9
             total += delay
             self._delays.setdefault(transform.child_frame_id, deque(maxlen=_KEPT)).append(delay)
         self._message_delays.append(total / max(1, len(message.transforms)))

@@ -17,10 +17,10 @@ from linkwright.geometry.single import (
     Vector3,
     compose,
     invert,
+    pose_quaternion,
     quaternion_from_rpy,
     quaternion_inverse,
     quaternion_multiply,
-    quaternion_of,
     rotate,
     rpy_from_quaternion,
 )
@@ -272,7 +272,7 @@ def links_of(model: Model, frames: Frames, pose: Transform, name: str, *, static
 
 def transform_of(pose: Pose) -> Transform:
     """Return a pose as a transform."""
-    return (*pose.xyz, *quaternion_of(pose))
+    return (*pose.xyz, *pose_quaternion(pose))
 
 
 def pose_of(transform: Transform) -> Pose:

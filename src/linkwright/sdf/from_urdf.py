@@ -12,7 +12,7 @@ from typing import TypeVar
 from linkwright.diagnostics import Diagnostic, phrase, quoted_names
 from linkwright.geometry.single import Pose, Transform, compose
 from linkwright.sdf import shapes
-from linkwright.sdf.bodies import Body, Part, bodies_of
+from linkwright.sdf.bodies import Body, Part, rigid_bodies
 from linkwright.sdf.frames import pose_of, transform_of
 from linkwright.sdf.gazebo import Extensions, LinkExtension
 from linkwright.sdf.joints import Axis, AxisLimit, AxisMimic, Joint
@@ -78,7 +78,7 @@ class _Converter:
         self._rigid = Bodies(robot)
 
     def model(self) -> Model:
-        bodies = bodies_of(self._robot, self._is_lumped)
+        bodies = rigid_bodies(self._robot, self._is_lumped)
         if self._lumps:
             bodies = self._remove_massless(bodies)
         parts = [part for body in bodies for part in body.parts]

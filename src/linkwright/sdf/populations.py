@@ -13,7 +13,7 @@ from math import cos, pi, sin, sqrt
 from random import Random
 
 from linkwright.geometry.shapes import Box, Cylinder
-from linkwright.geometry.single import Pose, Vector3, quaternion_of, rotate
+from linkwright.geometry.single import Pose, Vector3, pose_quaternion, rotate
 from linkwright.schema import ElementRule
 from linkwright.sdf.models import MODEL, Model
 from linkwright.sdf.poses import AT_ORIGIN, POSE, RawPose
@@ -71,7 +71,7 @@ def models_of(population: Population) -> Iterator[Model]:
     model = population.models[0]
     origin = population.pose.pose
     corner = [each - half for each, half in zip(origin.xyz, _half(population), strict=True)]
-    rotation = quaternion_of(origin)
+    rotation = pose_quaternion(origin)
     for index, place in enumerate(_places(population)):
         x, y, z = (one + other for one, other in zip(corner, rotate(rotation, place), strict=True))
         yield replace(model, name=f"{model.name}_clone_{index}", pose=RawPose(Pose((x, y, z))))

@@ -175,7 +175,7 @@ class SdfReport(Findings):
 
     def twice(self, element: Element, first: Element) -> None:
         """Report an element that has the same name as an earlier sibling."""
-        notes: Sequence[Note] = (Note(phrase("first defined here"), first.span()),)
+        notes: Sequence[Note] = (Note(phrase("it is first defined here"), first.span()),)
         message = phrase("two elements in the same place are named '{name}'", name=element.attributes.get("name", ""))
         if element.tag == first.tag:
             kind = element.tag

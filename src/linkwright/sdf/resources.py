@@ -15,7 +15,7 @@ from typing import NamedTuple
 from urllib.parse import unquote, urlsplit
 
 from linkwright.diagnostics import LinkwrightError, Phrase, Severity, did_you_mean, joined, phrase, quoted
-from linkwright.diagnostics.misspellings import misspelling_of
+from linkwright.diagnostics.misspellings import find_misspelt
 from linkwright.packages import PackageFinder, enclosing_package
 from linkwright.packages.finder import shipped_folder
 from linkwright.packages.manifest import MANIFEST
@@ -120,7 +120,7 @@ class ResourceFinder:
         try:
             path = self._packages.resolve(address, beside)
         except LinkwrightError as error:
-            meant = misspelling_of(scheme, _SCHEMES)
+            meant = find_misspelt(scheme, _SCHEMES)
             hint = error.diagnostics[0].hint if meant is None else did_you_mean(scheme, [meant])
             return Missing(error.diagnostics[0].message, hint)
         return path if path.exists() else _no_file(path)
@@ -225,7 +225,7 @@ class ResourceFinder:
 
     def _find_model_uri(self, address: str, path: str, beside: Path) -> Path | Missing:
         if not path:
-            return Missing(phrase("'{uri}' names no model", uri=address), phrase("write model://MODEL"))
+            return Missing(phrase("'{uri}' does not name a model", uri=address), phrase("write model://MODEL"))
         if beside not in self._near:
             self._near[beside] = _around(beside.absolute())
         near = self._near[beside]
@@ -242,7 +242,7 @@ class ResourceFinder:
         if renamed is not None:
             here = renamed.absolute().name
             return Missing(reason, phrase("the folder that contains '{path}' is named '{name}'", path=rest, name=here))
-        meant = misspelling_of(name, self.models()) if len(name) >= _SHORTEST else None
+        meant = find_misspelt(name, self.models()) if len(name) >= _SHORTEST else None
         if meant is not None:
             return Missing(reason, did_you_mean(name, [meant]))
         hint = phrase("add the folder that contains '{name}' to {variable}", name=name, variable=SEARCH_VARIABLES[0])

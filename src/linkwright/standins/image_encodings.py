@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.images.decoding import demosaiced, from_packed
+from linkwright.images.decoding import demosaic, packed_to_rgb
 
 DEPTHS = ("8U", "8S", "16U", "16S", "32S", "32F", "64F")
 """OpenCV's names of depths, indexed by their numbers."""
@@ -128,9 +128,9 @@ def _to_rgb(image: NDArray[Any], of: Encoding) -> NDArray[Any]:
     if of.order.startswith("bayer_"):
         if of.depth != "8U":
             raise ConversionError(f"Unsupported conversion from [{of.name}]: only mosaics of 8 bits are read")
-        return demosaiced(image, of.order.removeprefix("bayer_"))
+        return demosaic(image, of.order.removeprefix("bayer_"))
     if of.name in _PACKED_YUV:
-        return from_packed(image, of.order)
+        return packed_to_rgb(image, of.order)
     return image
 
 

@@ -21,7 +21,7 @@ from linkwright.diagnostics import (
     missing_file_hint,
     phrase,
 )
-from linkwright.files.input_files import LARGEST_TEXT, NoWriterError, read_file
+from linkwright.files.input_files import MAX_TEXT_BYTES, NoWriterError, read_file
 from linkwright.loading.lean_typing import TYPE_CHECKING, NoReturn
 from linkwright.xmltree.decoding import Decoded, decoded, unsaved
 from linkwright.xmltree.nodes import Comment, Document, Element, Node, ProcessingInstruction, Text
@@ -111,7 +111,7 @@ def parse_file(path: str | Path) -> Document:
 def read_bytes(path: str | Path) -> bytes:
     """Return the bytes of a file, or raise a `LinkwrightError` (XML101, XML102, XML103) with the reason."""
     try:
-        data = read_file(path, LARGEST_TEXT)
+        data = read_file(path, MAX_TEXT_BYTES)
     except FileNotFoundError:
         message = phrase("no such file: '{path}'", path=as_typed(path))
         raise LinkwrightError(Diagnostic("XML101", message, hint=_missing(path))) from None
@@ -133,8 +133,8 @@ def read_bytes(path: str | Path) -> bytes:
                 "XML103", phrase("cannot read '{path}': {reason}", path=path, reason=foreign(reason)), hint=advice
             )
         ) from None
-    if len(data) == LARGEST_TEXT:  # for example a device that produces endless data
-        reason = phrase("it has more than {count} million bytes", count=LARGEST_TEXT // 1_000_000)
+    if len(data) == MAX_TEXT_BYTES:  # for example a device that produces endless data
+        reason = phrase("it has more than {count} million bytes", count=MAX_TEXT_BYTES // 1_000_000)
         message = phrase("cannot read '{path}': {reason}", path=path, reason=reason)
         raise LinkwrightError(Diagnostic("XML103", message))
     return data

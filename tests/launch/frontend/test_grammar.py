@@ -116,8 +116,8 @@ def test_the_same_anonymous_name_each_time() -> None:
 @pytest.mark.parametrize(
     ("written", "message", "hint"),
     [
-        ("$(var x", "has no closing parenthesis", "end it with ')'"),
-        ("$( var x)", "there is no name after '$('", None),
+        ("$(var x", "has no closing parenthesis", "add ')' at its end"),
+        ("$( var x)", "there is an unexpected no name after '$('", None),
         ("$(said 'a)", "the quote ' is not closed", None),
         ("$(said a(b))", "'('", "put quotes around it"),
         ("$(said a'b')", "a quote inside the argument", "quote the whole argument"),

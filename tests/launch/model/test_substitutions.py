@@ -113,7 +113,7 @@ def test_path_join(context: LaunchContext) -> None:
 
 def test_find_executable(context: LaunchContext) -> None:
     assert os.access(text(FindExecutable(name="sh"), context), os.X_OK)
-    with pytest.raises(LinkwrightError, match="executable 'no-such-program' is not on PATH"):
+    with pytest.raises(LinkwrightError, match="program 'no-such-program' is not on PATH"):
         text(FindExecutable(name="no-such-program"), context)
 
 
@@ -183,7 +183,7 @@ def test_logic(context: LaunchContext, substitution: Substitution, value: str) -
 
 
 def test_logic_needs_truth_values(context: LaunchContext) -> None:
-    with pytest.raises(LinkwrightError, match="NotSubstitution needs 'true' or 'false', not 'arm'"):
+    with pytest.raises(LinkwrightError, match="NotSubstitution must have 'true' or 'false', not 'arm'"):
         text(NotSubstitution(LaunchConfiguration("model")), context)
 
 

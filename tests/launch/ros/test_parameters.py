@@ -193,7 +193,7 @@ listener:
         ("text", "message"),
         [
             ("a: [", "is not YAML"),
-            ("a: 1", "'a' has a value before 'ros__parameters'"),
+            ("a: 1", "'a' has a value, but only parameters below 'ros__parameters' can have values"),
             ("/**: {ros__parameters: {a: $(var nmber)}}", "launch configuration 'nmber' is not set"),
             ("/**: {ros__parameters: {a: $(vra number)}}", "there is no substitution 'vra'"),
             ("/**: {ros__parameters: {a: $(var number}}", "has no closing parenthesis"),

@@ -391,7 +391,7 @@ def test_clearing_around_the_robot_and_everywhere_else():
         eye = Eye(kind, *more)
         eye.see((2.55, 2.05), (3.55, 2.05))
         eye.buffer.add(np.array([2.05, 2.05, 0.3]), np.zeros((0, 3)), 0)
-        eye.costmap.clear_around(HERE, 1.4, except_it=True)
+        eye.costmap.clear_around(HERE, 1.4, outside=True)
         assert np.argwhere(eye.update() == LETHAL).tolist() == [[20, 25]]
         eye.costmap.clear_around(HERE, 1.4)
         assert not (eye.update() == LETHAL).any()

@@ -181,7 +181,7 @@ class TestPath:
         eight = line((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (1.0, 2.0), (1.0, -2.0))
         path = FollowedPath(eight, 1.0)
         path.progress(1.0, 0.0)
-        assert path.remaining(1.0, 0.0) == pytest.approx(8.0, abs=0.06)
+        assert path.remaining_distance(1.0, 0.0) == pytest.approx(8.0, abs=0.06)
         assert path.poses_ahead(0.5)[-1, :2] == pytest.approx([1.5, 0.0], abs=0.06)
 
     def test_its_end_is_two_poses(self):

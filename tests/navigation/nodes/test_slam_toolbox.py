@@ -14,7 +14,7 @@ from linkwright.geometry.single import quaternion_from_rpy, rpy_from_quaternion
 from linkwright.graph import SENSOR_DATA_QOS, STATIC_TF_PUBLISHER_QOS, TF_QOS
 from linkwright.messages import TFMessage, Time, TransformBatch, get_message, get_service
 from linkwright.navigation.grids.grid import FREE, OCCUPIED
-from linkwright.navigation.grids.occupancy import grid_of
+from linkwright.navigation.grids.occupancy import grid_from_message
 from linkwright.navigation.maps.map_files import load_map
 from linkwright.navigation.nodes.slam_toolbox.nodes import (
     AsyncSlamToolbox,
@@ -112,7 +112,7 @@ def map_to_odom(tf: Any) -> Any:
 
 
 def is_a_map(message: Any) -> bool:
-    grid = grid_of(message)
+    grid = grid_from_message(message)
     return bool((grid.cells == FREE).sum() > 2000 and (grid.cells == OCCUPIED).sum() > 100)
 
 
@@ -234,7 +234,7 @@ def test_the_map_is_saved_and_asked_for(test, tmp_path):
     test.advance(2.5)
     assert answer.info.width == maps.last.info.width
     saved = load_map(tmp_path / "flat.yaml")
-    assert ((saved.cells == OCCUPIED) == (grid_of(answer).cells == OCCUPIED)).all()
+    assert ((saved.cells == OCCUPIED) == (grid_from_message(answer).cells == OCCUPIED)).all()
 
 
 def test_a_new_map_begins_where_that_is_asked_for(test):

@@ -89,7 +89,9 @@ def test_the_median_and_the_mean_of_the_last_scans():
     assert list(last.ranges) == ranges([2.0, 6.0])
     assert list(last.intensities) == ranges([3.0, 6.0])
     assert list(each.apply(scan(8.0), nowhere).ranges) == ranges([8.0])
-    with pytest.raises(LinkwrightError, match="no filter 'Magic' of lists of numbers supports 1 observations"):
+    with pytest.raises(
+        LinkwrightError, match="filter 'Magic' does not exist for arrays, or does not support 1 observations"
+    ):
         ArrayFilter({"filter1": {"type": "Magic"}})
 
 

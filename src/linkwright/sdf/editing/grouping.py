@@ -16,7 +16,7 @@ from linkwright.sdf.frames import transform_of
 from linkwright.sdf.models import Include, Model
 from linkwright.sdf.poses import MODEL, SEPARATOR
 from linkwright.xmltree import Element
-from linkwright.xmltree.patches import Replacement, apply, escaped, indentation, newline_of
+from linkwright.xmltree.patches import Replacement, apply, escaped, indentation, line_ending
 
 _STEP = "  "
 _DIGITS = 3
@@ -57,7 +57,7 @@ def group(world: WorldText, names: Sequence[str], name: str) -> WorldText:
     text = world.text
     first = min(entities, key=lambda entity: entity.element.offset)
     start = writing.range_of(first.element)[0]
-    blanks, newline = indentation(text, start) or "", newline_of(text)
+    blanks, newline = indentation(text, start) or "", line_ending(text)
     inner = blanks + _STEP
     static = f"{newline}{inner}<static>true</static>" if entities[0].static else ""
     head = f'<model name="{escaped(name)}">{newline}{inner}<pose>{lengths((x, y, z, 0.0, 0.0, 0.0))}</pose>{static}'

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from math import atan2, degrees, hypot
 
 from linkwright.diagnostics import phrase
-from linkwright.geometry.single import Pose, Quaternion, Transform, quaternion_of
+from linkwright.geometry.single import Pose, Quaternion, Transform, pose_quaternion
 from linkwright.sdf.editing.errors import EditError
 from linkwright.sdf.editing.shapes import length, lengths, new_element
 from linkwright.xmltree import Element
@@ -16,10 +16,10 @@ from linkwright.xmltree.patches import (
     block,
     element_range,
     escaped,
+    find_start_tag,
     indentation,
-    inserted,
-    newline_of,
-    start_tag_of,
+    insertion,
+    line_ending,
     whole_lines,
 )
 from linkwright.xmltree.positions import attribute_name_range, attribute_value_range
@@ -51,7 +51,7 @@ def range_of(element: Element) -> tuple[int, int]:
 def content_of(element: Element) -> tuple[int, int]:
     """Return the start and end of an element's content; for ``<a/>`` an empty range after the tag."""
     start, end = range_of(element)
-    tag = start_tag_of(element)
+    tag = find_start_tag(element)
     assert tag is not None, "its range is known"
     return (tag.end, tag.end) if tag.is_whole else (tag.end, text_of(element).rindex("</", start, end))
 
@@ -59,7 +59,7 @@ def content_of(element: Element) -> tuple[int, int]:
 def set_text(element: Element, value: str) -> list[Replacement]:
     """Return the edits that set the text of an element; surrounding whitespace is kept."""
     text, (start, end) = text_of(element), content_of(element)
-    tag = start_tag_of(element)
+    tag = find_start_tag(element)
     assert tag is not None, "its content is known"
     if tag.is_whole:
         return [Replacement(tag.room, tag.end, f">{escaped(value)}</{element.tag}>")]
@@ -120,7 +120,7 @@ def inserted_in(owner: Element, new: list[Element], *, after: tuple[str, ...] = 
         EditError: the owner comes from an XML entity.
     """
     before = [child for child in owner.elements() if child.tag in after]
-    edit = inserted(owner, new, after=before[-1] if before else None, first=first)
+    edit = insertion(owner, new, after=before[-1] if before else None, first=first)
     if edit is None:
         raise EditError(phrase("<{tag}> comes from an entity, and cannot be edited", tag=owner.tag))
     return edit
@@ -135,7 +135,7 @@ def set_attribute(element: Element, name: str, value: str) -> list[Replacement]:
     found = attribute_value_range(text, element.offset, name)
     if found is None:
         range_of(element)
-        tag = start_tag_of(element)
+        tag = find_start_tag(element)
         assert tag is not None, "its range is known"
         return [Replacement(tag.room, tag.room, f' {name}="{escaped(value)}"')]
     written = escaped(value)
@@ -173,14 +173,14 @@ def replace_element(element: Element, new: list[Element]) -> Replacement:
         return removed(element)
     text, (start, end) = text_of(element), range_of(element)
     indent = indentation(text, start)
-    between = "" if indent is None else f"{newline_of(text)}{indent}"
+    between = "" if indent is None else f"{line_ending(text)}{indent}"
     return Replacement(start, end, between.join(block(element) for element in new))
 
 
 def set_pose(element: Element, pose: Pose) -> list[Replacement]:
     """Return the edits that set a ``<pose>``, in the units and rotation format that it declares."""
     if element.attributes.get("rotation_format", "").strip() == "quat_xyzw":
-        numbers: tuple[float, ...] = (*pose.xyz, *_nearest(element, quaternion_of(pose)))
+        numbers: tuple[float, ...] = (*pose.xyz, *_nearest(element, pose_quaternion(pose)))
     elif element.attributes.get("degrees", "").strip().casefold() in _TRUE:
         numbers = (*pose.xyz, *map(degrees, pose.rpy))
     else:

@@ -53,10 +53,10 @@ class ClassicState(SimulatedPlugin[StateParameters]):
         return get_message(kind)(names, [state.pose for state in states], [state.twist for state in states])
 
     def _get(self, request: Any, response: Any) -> Any:
-        return self._entities.answer_get("get_entity_state", request, response, self.node.logger.error)
+        return self._entities.fill_get_response("get_entity_state", request, response, self.node.logger.error)
 
     def _set(self, request: Any, response: Any) -> Any:
-        return self._entities.answer_set("set_entity_state", request, response, self.node.logger.error)
+        return self._entities.fill_set_response("set_entity_state", request, response, self.node.logger.error)
 
     def _set_joints(self, request: Any, response: Any) -> Any:
         if len(request.joint_names) != len(request.joint_positions):

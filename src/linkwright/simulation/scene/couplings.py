@@ -11,8 +11,8 @@ from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.structure import PlacedJoint
 
 THREAD = "#thread"
-"""The suffix of the name of the joint along which a screw moves while it turns."""
-_STEPS = 4.0
+"""The suffix of the name of the joint for the translation of a screw."""
+_TIME_CONSTANT_STEPS = 4.0
 """The time constant of joint couplings, in steps."""
 
 
@@ -49,7 +49,7 @@ def _add_coupling(spec: Any, follower: str, leader: str, factor: float) -> Any:
     equality = spec.add_equality(type=load_mujoco().mjtEq.mjEQ_JOINT)
     equality.name1, equality.name2 = follower, leader
     equality.data[:5] = [0.0, factor, 0.0, 0.0, 0.0]
-    equality.solref = [_STEPS * spec.option.timestep, 1.0]
+    equality.solref = [_TIME_CONSTANT_STEPS * spec.option.timestep, 1.0]
     return equality
 
 

@@ -15,7 +15,7 @@ from linkwright.geometry.decomposition import convex_pieces, thicken
 from linkwright.geometry.mesh_files import BadMeshError, declared_triangles, file_resolver
 from linkwright.geometry.mesh_parts import MeshPart, Triangles, read_parts, read_png
 from linkwright.geometry.meshes import read_mesh, unreadable
-from linkwright.geometry.polygon import triangulated
+from linkwright.geometry.polygon import triangulate
 from linkwright.geometry.single import Transform, compose, rotation_from_z
 from linkwright.images.heights import read_heights
 from linkwright.sdf.links import Visual
@@ -346,7 +346,7 @@ def _bounded(path: Path, count: int) -> None:
 
 def _prisms(polyline: Polyline) -> Iterator[Array]:
     points = np.array(polyline.points, dtype=np.float64).reshape(-1, 2)
-    for triangle in triangulated(polyline.points):
+    for triangle in triangulate(polyline.points):
         base = points[list(triangle)]
         yield np.concatenate([np.insert(base, 2, height, axis=1) for height in (0.0, polyline.height)])
 

@@ -23,9 +23,9 @@ from linkwright.simulation.sensors.mount import GeomTable, Mount, part_of, parts
 from linkwright.simulation.sensors.noise import NoiseSource
 
 _SURFACE_GAP = 1e-9
-"""The step in m behind a surface, so that a ray does not hit it again."""
-_SURFACES = 64
-"""The greatest number of surfaces of its own robot that a ray passes before its range begins."""
+"""The distance in m behind a surface at which a ray continues, so that it does not hit the surface again."""
+_MAX_OWN_SURFACES = 64
+"""The maximum number of surfaces of its robot that a ray passes before the minimum range."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +33,7 @@ class Scan:
     """A measurement of a lidar.
 
     Attributes:
-        ranges: in m, shape (vertical, horizontal); -inf below and inf above the range of the lidar.
+        ranges: the distances in m, shape (vertical, horizontal); -inf below the range of the lidar, and inf above it.
         intensities: `laser_retro` of the hit surfaces, 0 without a hit, shape (vertical, horizontal).
     """
 
@@ -41,7 +41,7 @@ class Scan:
     intensities: Array
 
 
-def angles_of(sweep: Sweep) -> Array:
+def sweep_angles(sweep: Sweep) -> Array:
     """Return the angles of the rays of a sweep, in rad, shape (count,)."""
     angles: Array = sweep.min_angle + sweep.step * np.arange(sweep.count, dtype=np.float64)
     return angles
@@ -72,12 +72,12 @@ class LidarSensor:
         self._groups = np.zeros(GROUPS, dtype=np.uint8)
         self._groups[VISUAL_GROUP if sees_visuals else COLLISION_GROUP] = 1
         self._retro = GeomTable(self._simulation, self._retro_by_geom)
-        self._own = GeomTable(self._simulation, self._owned)
+        self._own_geoms = GeomTable(self._simulation, self._owned)
 
     @cached_property
     def directions(self) -> Array:
         """The unit vectors of the ray directions in the lidar's frame, shape (vertical * horizontal, 3)."""
-        up, across = np.meshgrid(angles_of(self.vertical), angles_of(self.horizontal), indexing="ij")
+        up, across = np.meshgrid(sweep_angles(self.vertical), sweep_angles(self.horizontal), indexing="ij")
         x, y, z = np.cos(up) * np.cos(across), np.cos(up) * np.sin(across), np.sin(up)
         rays: Array = np.stack([x, y, z], axis=-1).reshape(-1, 3)
         return rays
@@ -107,7 +107,7 @@ class LidarSensor:
         ranges, geoms = cast(
             simulation.model, simulation.data, origin, rays, self._groups, apart_from=body, reach=reach
         )
-        own = self._own.array()
+        own = self._own_geoms.array()
         for ray in np.nonzero((geoms >= 0) & (ranges < self.range_min) & (own[geoms] > 0))[0]:
             ranges[ray], geoms[ray] = self._beyond(origin, rays[ray], body, float(ranges[ray]), own)
         return ranges, geoms
@@ -118,7 +118,7 @@ class LidarSensor:
         The distance is inf, and the geom -1, if there is no such hit.
         """
         simulation, geom = self._simulation, np.zeros(1, dtype=np.int32)
-        for _ in range(_SURFACES):
+        for _ in range(_MAX_OWN_SURFACES):
             start = reached + _SURFACE_GAP
             further = self._mujoco.mj_ray(
                 simulation.model, simulation.data, origin + start * ray, ray, self._groups, 1, body, geom

@@ -72,7 +72,7 @@ def check_keys(items: Collection[Any]) -> None:
         ):
             raise RefusalError(
                 phrase(
-                    "more than {count:,} of the keys have the same hash, which real keys never do",
+                    "more than {count:,} keys have the same hash",
                     count=_MAX_EQUAL_HASHES,
                 )
             )
@@ -149,7 +149,9 @@ def _bounded_function(name: str) -> Callable[..., Any]:
 
     def guarded(*numbers: Any) -> Any:
         if len(numbers) > _MOST_NUMBERS:
-            raise RefusalError(phrase("'{name}' of more than {count:,} numbers", name=name, count=_MOST_NUMBERS))
+            raise RefusalError(
+                phrase(("'{name}' receives more than {count:,} numbers"), name=name, count=_MOST_NUMBERS)
+            )
         return function(*numbers)
 
     return guarded
@@ -158,7 +160,9 @@ def _bounded_function(name: str) -> Callable[..., Any]:
 def _sumprod(left: Iterable[Any], right: Iterable[Any]) -> Any:
     pairs = list(zip(left, right, strict=True))
     if len(pairs) > _MOST_NUMBERS and not all(isinstance(number, float) for pair in pairs for number in pair):
-        raise RefusalError(phrase("'{name}' of more than {count:,} numbers", name="sumprod", count=_MOST_NUMBERS))
+        raise RefusalError(
+            phrase(("'{name}' receives more than {count:,} numbers"), name="sumprod", count=_MOST_NUMBERS)
+        )
     return sum(one * other for one, other in pairs)
 
 
@@ -198,4 +202,4 @@ def split(pattern: str, text: str) -> list[str]:
     except regex.error as error:
         raise re.error(str(error)) from None
     except TimeoutError:
-        raise RefusalError(phrase("splitting at these characters takes too long")) from None
+        raise RefusalError(phrase("it takes too long to split the string at these characters")) from None

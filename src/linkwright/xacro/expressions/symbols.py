@@ -78,7 +78,10 @@ _GUARDED: dict[str, Any] = {"range": _range, "round": _round, "sum": _sum, "type
 def _factorial(n: Any) -> int:
     if isinstance(n, int) and n > _LARGEST_FACTORIAL:
         raise RefusalError(
-            phrase("the factorial of more than {largest_factorial:,}", largest_factorial=_LARGEST_FACTORIAL)
+            phrase(
+                ("the factorial of a number above {largest_factorial:,} is too large"),
+                largest_factorial=_LARGEST_FACTORIAL,
+            )
         )
     return math.factorial(n)
 
@@ -89,7 +92,11 @@ def _of_two(name: str) -> Callable[..., int]:
     def guarded(n: Any, *k: Any) -> int:
         if isinstance(n, int) and n > _LARGEST_FACTORIAL:
             raise RefusalError(
-                phrase("'{name}' of more than {largest_factorial:,}", name=name, largest_factorial=_LARGEST_FACTORIAL)
+                phrase(
+                    ("'{name}' receives a number above {largest_factorial:,}"),
+                    name=name,
+                    largest_factorial=_LARGEST_FACTORIAL,
+                )
             )
         result: int = function(n, *k)
         return result

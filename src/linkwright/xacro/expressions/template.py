@@ -272,7 +272,7 @@ def _not_a_token(text: str, at: int) -> Fault:
                 "'{opening}' is never closed: '{shortened}'", opening=opening, shortened=_shortened(text[at:])
             )
             return Fault("XAC101", message, at, len(text), phrase("close it with '{closing}'", closing=closing))
-    message = phrase("'$$' means nothing here: '{shortened}'", shortened=_shortened(text[at:]))
+    message = phrase("'$$' has no meaning here: '{shortened}'", shortened=_shortened(text[at:]))
     hint = phrase("'$$' is only for a literal '${' or '$('; write one '$' for a dollar sign")
     return Fault("XAC101", message, at, at + 2, hint)
 

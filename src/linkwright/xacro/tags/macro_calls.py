@@ -6,7 +6,7 @@ from linkwright.diagnostics import Note, counted, did_you_mean, joined, phrase, 
 from linkwright.loading.lean_typing import Any, NoReturn
 from linkwright.xacro.expander import Container, Expander, Site, check_attributes, warn_of_global
 from linkwright.xacro.expressions.scope import Scope
-from linkwright.xacro.faults import Fault, Frame, attribute_name, definition_elsewhere
+from linkwright.xacro.faults import Fault, Frame, attribute_name, inactive_definition
 from linkwright.xacro.macros import Macro, MacroTable, Parameter, parse_parameters
 from linkwright.xacro.plan import PREFIX
 from linkwright.xmltree import Element
@@ -87,7 +87,7 @@ class _Call:
             self._report_missing(macro, missing)
         container = self._expand_body(macro, scope, MacroTable(macros))
         output = site.parent.children
-        mark = expander.sweeper.sweep(output, followed=site.followed)
+        mark = expander.sweeper.sweep(output, followed=site.has_followers)
         expander.lift_namespaces(container, site)
         expander.splice(container, site)
         if mark:
@@ -124,7 +124,7 @@ class _Call:
         elif hint is None:
             hint = phrase("no macro is defined before this; is an include missing?")
         span = node.span() if self._written_in is None else node.attribute_span(self._written_in)
-        elsewhere = definition_elsewhere(node.source, "macro", name, used_at=node.offset) if node.source else None
+        elsewhere = inactive_definition(node.source, "macro", name, used_at=node.offset) if node.source else None
         notes = () if elsewhere is None else (elsewhere.note,)
         if elsewhere is not None and not known:
             hint = elsewhere.hint or phrase("move its definition above this call")

@@ -17,7 +17,7 @@ from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expander import Directive, Expander, Site
 from linkwright.xacro.expressions.scope import Scope
-from linkwright.xacro.faults import Fault, attribute_part, text_part
+from linkwright.xacro.faults import Fault, attribute_span, text_part
 from linkwright.xacro.session import Inputs, main_document
 from linkwright.xacro.tags.directives import DIRECTIVES
 from linkwright.xacro.tracing.traced import TracedSession, expand_traced
@@ -238,7 +238,7 @@ def _used_arguments(element: Element) -> Iterator[tuple[str, Span | None]]:
     for attribute, value in element.attributes.items():
         for match in _found(value):
             name = match["plain"] or match["called"]
-            yield name, attribute_part(element, attribute, *match.span())
+            yield name, attribute_span(element, attribute, *match.span())
     for child in element.children:
         if isinstance(child, Text) and not child.cdata:
             for match in _found(child.data):

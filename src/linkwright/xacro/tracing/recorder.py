@@ -9,7 +9,7 @@ from linkwright.diagnostics import LinkwrightError, Span
 from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expander import Directive, Expander, Site
 from linkwright.xacro.expressions.scope import Lazy, Scope, literal
-from linkwright.xacro.faults import Fault, Frame, attribute_part
+from linkwright.xacro.faults import Fault, Frame, attribute_span
 from linkwright.xacro.macros import Parameter, parse_parameters
 from linkwright.xacro.tags.directives import DIRECTIVES
 from linkwright.xacro.tags.macro_calls import call_macro
@@ -269,7 +269,7 @@ def _parameter(parameter: Parameter, value: Any, call: Element, macro: Element) 
         return Value(parameter.name, "parameter", text, place, written)
     default = parameter.default
     if default is None:
-        place = attribute_part(macro, "params", parameter.start, parameter.start + len(parameter.name))
+        place = attribute_span(macro, "params", parameter.start, parameter.start + len(parameter.name))
         return Value(parameter.name, "parameter", text, place, None)
-    place = attribute_part(macro, "params", parameter.default_start, parameter.default_start + len(default))
+    place = attribute_span(macro, "params", parameter.default_start, parameter.default_start + len(default))
     return Value(parameter.name, "parameter", text, place, default)
