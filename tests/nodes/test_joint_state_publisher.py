@@ -300,7 +300,12 @@ class TestParameters:
             ),
             (
                 {"dependent_joints": {"a": {"parent": "b", "faktor": 2.0}}},
-                ["invalid dependent_joint name 'a.faktor': allowed are JOINT.parent, JOINT.factor and JOINT.offset"],
+                [
+                    (
+                        "'a.faktor' is not a valid name of a dependent joint's parameter; write "
+                        "JOINT.parent, JOINT.factor or JOINT.offset"
+                    )
+                ],
             ),
         ],
     )

@@ -170,11 +170,11 @@ def _expansion(inputs: Inputs, verbosity: int, *, deps: bool) -> str:
 
 def _arguments(inputs: Inputs, verbosity: int, form: str) -> str:
     from linkwright.xacro.tracing.arguments import arguments_data, examine_arguments
-    from linkwright.xacro.tracing.arguments_text import arguments_text, incomplete
+    from linkwright.xacro.tracing.arguments_text import arguments_text, incompleteness_remarks
 
     examined = examine_arguments(inputs)
     if verbosity > _QUIET:
-        print_diagnostics([*incomplete(examined), *examined.unused], sys.stderr)
+        print_diagnostics([*incompleteness_remarks(examined), *examined.unused], sys.stderr)
     if form == "json":
         return _json({"arguments": arguments_data(examined.arguments)})
     return arguments_text(examined.arguments)

@@ -145,8 +145,8 @@ class _Reader:
                     Diagnostic(
                         "NODE201",
                         phrase(
-                            "invalid dependent_joint name '{rest}': allowed are JOINT.parent, JOINT.factor and"
-                            " JOINT.offset",
+                            "'{rest}' is not a valid name of a dependent joint's parameter; write "
+                            "JOINT.parent, JOINT.factor or JOINT.offset",
                             rest=rest,
                         ),
                         hint=did_you_mean(entry, _DEPENDENT_FIELDS),

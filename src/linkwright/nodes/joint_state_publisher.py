@@ -47,7 +47,7 @@ Array = NDArray[np.float64]
 
 
 class _Quantity:
-    """The positions, velocities or efforts of the free joints; NaN for a joint without a value."""
+    """The values of one quantity (position, velocity or effort) of the free joints; NaN if a joint has none."""
 
     def __init__(self, values: Array) -> None:
         self._with_zero = np.append(values, 0.0)
@@ -66,20 +66,20 @@ class _Quantity:
         """
         if np.isnan(self.values).all():
             return None
-        spread: Array = self._with_zero[layout.masters]  # masters is -1 for joints that do not move
+        published_values: Array = self._with_zero[layout.masters]  # masters is -1 for joints that do not move
         if scaled:
-            spread *= layout.factor
+            published_values *= layout.factor
         if shifted:
-            spread += layout.offset
-        spread[np.isnan(spread)] = 0.0
-        return spread
+            published_values += layout.offset
+        published_values[np.isnan(published_values)] = 0.0
+        return published_values
 
 
 class JointPositions:
     """Positions (rad or m), velocities and efforts of the free joints, on which the other joints depend.
 
     Args:
-        settings: the settings, which determine the quantities that joints have from the start.
+        settings: the settings, which determine the quantities that have initial values.
     """
 
     def __init__(self, settings: JointSettings) -> None:
@@ -92,42 +92,42 @@ class JointPositions:
     def take_over(self, layout: JointLayout, settings: JointSettings) -> None:
         """Change to another layout.
 
-        Joints that are free in both layouts and have left their initial position keep their state, clamped to the new
-        limits.
-        All other joints start at their zero position.
+        Joints that are free in both layouts keep their velocity and effort. They also keep their position, clamped to
+        the new limits, if it differs from the previous zero position or if joints start without positions. All other
+        values are initialized as `settings` defines.
         """
-        before, rows_before = self._free_states(), self._rows
-        zeros_before = {joint.name: joint.zero for joint in self.layout.free}
+        previous_states, previous_rows = self._free_states(), self._rows
+        previous_zeros = {joint.name: joint.zero for joint in self.layout.free}
         self.layout = layout
         self._rows = {joint.name: row for row, joint in enumerate(layout.free)}
-        start = [joint.zero if settings.publish_default_positions else np.nan for joint in layout.free]
+        initial_positions = [joint.zero if settings.publish_default_positions else np.nan for joint in layout.free]
         count = len(layout.free)
-        self._position = _Quantity(np.array(start, dtype=np.float64))
+        self._position = _Quantity(np.array(initial_positions, dtype=np.float64))
         self._velocity = _Quantity(np.full(count, 0.0 if settings.publish_default_velocities else np.nan))
         self._effort = _Quantity(np.full(count, 0.0 if settings.publish_default_efforts else np.nan))
         self._direction = np.ones(count)
         self._lower = np.array([joint.lower for joint in layout.free])
         self._upper = np.array([joint.upper for joint in layout.free])
-        self._ahead = self._upper
-        self._wraps = np.array([joint.kind == "continuous" for joint in layout.free], dtype=np.bool_)
+        self._next_limits = self._upper
+        self._is_continuous = np.array([joint.kind == "continuous" for joint in layout.free], dtype=np.bool_)
         for joint in layout.free:
-            row = rows_before.get(joint.name)
+            row = previous_rows.get(joint.name)
             if row is not None:
-                self._store(joint, before[:, row], zeros_before[joint.name])
+                self._restore(joint, previous_states[:, row], previous_zeros[joint.name])
 
     def apply_message(self, message: JointState) -> None:
         """Apply the values of a message to the free joints, without clamping positions to the limits."""
-        for number, name in enumerate(message.name):
+        for index, name in enumerate(message.name):
             row = self._rows.get(name)
             if row is None:
                 continue
-            for quantity, given in (
+            for quantity, values in (
                 (self._position, message.position),
                 (self._velocity, message.velocity),
                 (self._effort, message.effort),
             ):
-                if number < len(given):
-                    quantity.values[row] = given[number]
+                if index < len(values):
+                    quantity.values[row] = values[index]
 
     def sweep(self, delta: float) -> None:
         """Move every free joint by `delta` (rad or m); joints reverse at their limits.
@@ -136,23 +136,23 @@ class JointPositions:
         """
         position, direction = self._position.values, self._direction
         position += direction * delta
-        beyond = (position - self._ahead) * direction > 0.0
-        if beyond.any():
-            position[beyond] = np.where(self._wraps, self._lower, self._ahead)[beyond]
-            self._direction = np.where(beyond & ~self._wraps, -direction, direction)
-            self._ahead = np.where(self._direction > 0.0, self._upper, self._lower)
+        is_beyond_limit = (position - self._next_limits) * direction > 0.0
+        if is_beyond_limit.any():
+            position[is_beyond_limit] = np.where(self._is_continuous, self._lower, self._next_limits)[is_beyond_limit]
+            self._direction = np.where(is_beyond_limit & ~self._is_continuous, -direction, direction)
+            self._next_limits = np.where(self._direction > 0.0, self._upper, self._lower)
 
     def set(self, name: str, position: float) -> None:
         """Set the position of a free joint, clamped to its limits.
 
         Raises:
-            KeyError: there is no such joint.
+            KeyError: if there is no free joint with this name.
         """
         row = self._rows[name]
         self._position.values[row] = min(max(position, self._lower[row]), self._upper[row])
 
     def published(self) -> Array:
-        """Return the positions of all published joints in the order of messages; 0 for unknown positions."""
+        """Return the positions of all published joints (rad or m), in message order; 0 if a position is not known."""
         positions = self._position.spread(self.layout, scaled=True, shifted=True)
         return np.zeros(len(self.layout.ranges)) if positions is None else positions
 
@@ -174,11 +174,11 @@ class JointPositions:
     def _free_states(self) -> Array:
         return np.array([self._position.values, self._velocity.values, self._effort.values])
 
-    def _store(self, joint: JointRange, state: Array, zero_before: float) -> None:
+    def _restore(self, joint: JointRange, state: Array, previous_zero: float) -> None:
         row = self._rows[joint.name]
         position, velocity, effort = state.tolist()
-        starts_without = np.isnan(self._position.values[row])
-        if not np.isnan(position) and (position != zero_before or starts_without):
+        has_no_initial_position = np.isnan(self._position.values[row])
+        if not np.isnan(position) and (position != previous_zero or has_no_initial_position):
             self._position.values[row] = joint.clamp(position)
         if not np.isnan(velocity):
             self._velocity.values[row] = velocity
@@ -191,13 +191,13 @@ _FIRST_ELEMENT = re.compile(r"<([A-Za-z]\w*)")
 
 
 class Watcher(Protocol):
-    """The interface of an observer of the joints."""
+    """The interface of objects that are notified of changes to the joints."""
 
     def rebuild(self) -> None:
         """Handle a change of the robot or of the settings."""
 
     def notice_positions(self) -> None:
-        """Handle positions that were set by a source topic or by the periodic motion."""
+        """Handle a change of positions by a source topic or by the periodic motion."""
 
 
 class JointStatePublisher(SingleNode):
@@ -209,9 +209,9 @@ class JointStatePublisher(SingleNode):
             the topic ``robot_description``.
 
     Raises:
-        LinkwrightError: the node cannot start: invalid parameters (NODE201), joints that mimic each other in a cycle
-            (NODE202), a file that cannot be read (NODE203, or the file's error), too many arguments (NODE204), a file
-            that is SDF or COLLADA (NODE205).
+        LinkwrightError: if parameters are invalid (NODE201), joints mimic each other in a cycle (NODE202), the file
+            cannot be read (NODE203, or the file's error), there are too many arguments (NODE204), or the file is SDF or
+            COLLADA (NODE205).
     """
 
     DEFAULT_NAME = "joint_state_publisher"
@@ -249,18 +249,18 @@ class JointStatePublisher(SingleNode):
         self._watchers.append(watcher)
 
     def publish_soon(self) -> None:
-        """Publish once in the next iteration of the event loop, even if called several times."""
+        """Publish one message in the next iteration of the event loop, even after several calls."""
         self._soon.trigger()
 
     def _robot_from_arguments(self, arguments: Sequence[str]) -> Robot | None:
         if not arguments:
             return None
         if len(arguments) > 1:
-            unknown = " ".join(arguments[1:])
+            extra_arguments = " ".join(arguments[1:])
             raise LinkwrightError(
                 Diagnostic(
                     "NODE204",
-                    phrase("unrecognized arguments: {unknown}", unknown=unknown),
+                    phrase("unrecognized arguments: {unknown}", unknown=extra_arguments),
                     hint=phrase("the only argument is a URDF file"),
                 )
             )
@@ -274,19 +274,19 @@ class JointStatePublisher(SingleNode):
                     "NODE203", phrase("URDF file '{path}' cannot be read: {reason}", path=path, reason=foreign(reason))
                 )
             ) from error
-        reading = self._library.read(text)
-        if reading.robot is None:
-            other = _other_format(text)
-            if other:
+        read_result = self._library.read(text)
+        if read_result.robot is None:
+            format_name = _format_name(text)
+            if format_name:
                 raise LinkwrightError(
                     Diagnostic(
                         "NODE205",
-                        phrase("'{path}' is {other}, but this node reads only URDF", path=path, other=other),
-                        hint=phrase("the ROS node reads SDF and COLLADA too; convert the file to URDF"),
+                        phrase("'{path}' is {other}, but this node reads only URDF", path=path, other=format_name),
+                        hint=phrase("convert the file to URDF; only the ROS node also reads SDF and COLLADA"),
                     )
                 )
-            raise LinkwrightError(*reading.diagnostics)
-        return reading.robot
+            raise LinkwrightError(*read_result.diagnostics)
+        return read_result.robot
 
     def _wait_for_description(self) -> None:
         self._node.get_logger().info("Waiting for robot_description to be published on the robot_description topic...")
@@ -295,9 +295,9 @@ class JointStatePublisher(SingleNode):
     def _on_description(self, message: String) -> None:
         robot = self._library.read(message.data).robot
         if robot is None:
-            other = _other_format(message.data)
-            why = f": it is {other}, and this node reads URDF" if other else ""
-            self._node.get_logger().warning(f"Invalid robot_description given, ignoring{why}")
+            format_name = _format_name(message.data)
+            reason = f": it is {format_name}, and this node reads URDF" if format_name else ""
+            self._node.get_logger().warning(f"Invalid robot_description given, ignoring{reason}")
             return
         try:
             self._configure(robot)
@@ -314,10 +314,10 @@ class JointStatePublisher(SingleNode):
             watcher.rebuild()
         self.publish_soon()
 
-    def _read_settings(self, changed: Sequence[Parameter] = ()) -> JointSettings:
+    def _read_settings(self, changes: Sequence[Parameter] = ()) -> JointSettings:
         node = self._node
         values = {name: node.get_parameter(name).value for name in node.parameter_names()}
-        return settings_from(values | {parameter.name: parameter.value for parameter in changed})
+        return settings_from(values | {parameter.name: parameter.value for parameter in changes})
 
     def _check_parameters(self, parameters: list[Parameter]) -> SetParametersResult:
         try:
@@ -329,11 +329,11 @@ class JointStatePublisher(SingleNode):
         return SetParametersResult(successful=True)
 
     def _apply_parameters(self, parameters: list[Parameter]) -> None:
-        before, self._settings = self._settings, self._read_settings()
-        if self._settings.rate != before.rate:
+        previous, self._settings = self._settings, self._read_settings()
+        if self._settings.rate != previous.rate:
             self._timer.timer_period_ns = round(1e9 / self._settings.rate)
             self._timer.reset()
-        if self._settings.source_list != before.source_list:
+        if self._settings.source_list != previous.source_list:
             self._subscribe_to_sources()
         if self._robot is not None:
             self._configure(self._robot)
@@ -373,7 +373,7 @@ class JointStatePublisher(SingleNode):
             self._publisher.publish(message)
 
 
-def _other_format(text: str) -> str | None:
+def _format_name(text: str) -> str | None:
     """Return the name of another robot format if the root element indicates one, otherwise None."""
     element = _FIRST_ELEMENT.search(text)
     return None if element is None else _OTHER_FORMATS.get(element[1])

@@ -1,4 +1,4 @@
-"""Parameters of nodes and controllers, declared by a dataclass with their names, types and defaults.
+"""Parameters of nodes and controllers, declared by dataclasses with names, types and defaults.
 
     @dataclass(frozen=True, kw_only=True)
     class Gains:
@@ -34,7 +34,7 @@ from linkwright.messages.distribution import is_before_iron
 P = TypeVar("P")
 
 Check = Callable[[str, Any], "Phrase | None"]
-"""A validator: the problem of a named parameter's value, or None."""
+"""A validator, which takes the name and value of a parameter and returns an error message or None."""
 
 _TYPES: dict[Any, ParameterType] = {
     str: ParameterType.STRING,
@@ -49,11 +49,11 @@ _TYPES: dict[Any, ParameterType] = {
     bool | None: ParameterType.BOOL,
 }
 HUMBLE, JAZZY = "humble", "jazzy"
-"""Distributions to which a parameter may be limited."""
+"""The distributions to which a parameter may be limited; each represents one side of the change in Iron."""
 
-_SAME = object()
-_NAMES, _TABLE, _BELOW, _ABOUT = "names", "table", "below", "about"
-_OF_EVERY_NODE = ("use_sim_time", "params_file", "type", "qos_overrides", "start_type_description_service")
+_UNCHANGED = object()
+_NAMES, _TABLE, _BELOW, _DETAILS = "names", "table", "below", "about"
+_COMMON_PREFIXES = ("use_sim_time", "params_file", "type", "qos_overrides", "start_type_description_service")
 
 
 @dataclass(frozen=True)
@@ -62,12 +62,12 @@ class NoParameters:
 
 
 @dataclass(frozen=True, slots=True)
-class _About:
+class _Details:
     description: str = ""
     read_only: bool = False
     check: Check | None = None
     only: str = ""
-    later: Any = _SAME
+    later: Any = _UNCHANGED
 
 
 def parameter(
@@ -77,28 +77,27 @@ def parameter(
     read_only: bool = False,
     check: Check | None = None,
     only: str = "",
-    later: Any = _SAME,
+    later: Any = _UNCHANGED,
 ) -> Any:
-    """Declare a parameter with a constraint, a description or a default that varies.
+    """Return a dataclass field for a parameter with a constraint, a description or distribution-specific values.
 
     Args:
         default: the default value.
         description: the purpose of the parameter, with its unit.
         read_only: whether the value cannot change after the declaration.
         check: the constraint on the value.
-        only: the only distribution that has the parameter, `HUMBLE` or `JAZZY`, each including its neighbours; empty if
-            both have it.
-        later: the default from Iron on, if it differs.
+        only: the distributions that have the parameter: `HUMBLE` for those before Iron, `JAZZY` for Iron and later;
+            empty for all.
+        later: the default in Iron and later distributions, if it differs.
     """
-    return field(default=default, metadata={_ABOUT: _About(description, read_only, check, only, later)})
+    return field(default=default, metadata={_DETAILS: _Details(description, read_only, check, only, later)})
 
 
 def for_each(names: str, table: type[Any], *, below: str = "") -> Any:
-    """Declare a group of parameters for each name in another parameter, such as ``gains.JOINT.p``.
+    """Return a dataclass field for a group of parameters for each name in another parameter, as in ``gains.JOINT.p``.
 
     Args:
-        names: the parameter that contains the names, which precedes this field in the same table; several parameters
-            are separated by spaces.
+        names: the fields of the same table that contain the names, separated by spaces; they must precede this field.
         table: the dataclass with the parameters for one name.
         below: the prefix of the parameters, if it differs from the name of the field.
     """
@@ -110,7 +109,7 @@ class _Declaration:
     name: str
     kind: ParameterType
     default: Any
-    about: _About
+    about: _Details
 
 
 def declared(node: Node, table: type[P], prefix: str = "", usual: P | None = None) -> P:
@@ -140,7 +139,7 @@ class ParameterTable(Generic[P]):
         LinkwrightError: a value has another type (GRAPH201) or is not allowed (CTL101).
 
     Attributes:
-        values: the current values, which are replaced by a new object on each change.
+        values: the current values; each change replaces this object.
     """
 
     def __init__(self, node: Node, table: type[P]) -> None:
@@ -148,7 +147,7 @@ class ParameterTable(Generic[P]):
         self._table = table
         self._reader = _Reader(node)
         self.values: P = self._read()
-        node.add_on_set_parameters_callback(self._objection)
+        node.add_on_set_parameters_callback(self._validate)
         node.add_post_set_parameters_callback(lambda _: self.refresh())
 
     def refresh(self) -> None:
@@ -158,21 +157,21 @@ class ParameterTable(Generic[P]):
     def unknown(self) -> Iterator[tuple[str, Phrase | None]]:
         """Yield each given parameter that does not exist, with a suggestion of the intended name or None."""
         for name in self._node.undeclared_overrides():
-            if not name.startswith(_OF_EVERY_NODE):
+            if not name.startswith(_COMMON_PREFIXES):
                 yield name, did_you_mean(name, self._reader.declared)
 
     def _read(self) -> P:
         values: P = self._reader.read(self._table)
         return values
 
-    def _objection(self, parameters: list[Parameter]) -> SetParametersResult:
+    def _validate(self, parameters: list[Parameter]) -> SetParametersResult:
         for parameter in parameters:
-            known = self._reader.declared.get(parameter.name)
-            if known is None or known.about.check is None or parameter.value is None:
+            declaration = self._reader.declared.get(parameter.name)
+            if declaration is None or declaration.about.check is None or parameter.value is None:
                 continue
-            wrong = known.about.check(parameter.name, parameter.value)
-            if wrong is not None:
-                return SetParametersResult(successful=False, reason=wrong)
+            problem = declaration.about.check(parameter.name, parameter.value)
+            if problem is not None:
+                return SetParametersResult(successful=False, reason=problem)
         return SetParametersResult(successful=True)
 
 
@@ -187,44 +186,44 @@ class _Reader:
         self._node = node
         self.declared: dict[str, _Declaration] = {}
 
-    def read(self, table: Any, prefix: str = "", usual: Any = None) -> Any:
-        kinds = _kinds(table)
+    def read(self, table: Any, prefix: str = "", defaults: Any = None) -> Any:
+        kinds = _field_types(table)
         values: dict[str, Any] = {}
         for entry in fields(table):
             kind, name = kinds[entry.name], f"{prefix}{entry.name}"
             if _NAMES in entry.metadata:
-                keys = dict.fromkeys(key for names in entry.metadata[_NAMES] for key in _listed(values[names]))
-                inside = entry.metadata[_TABLE]
+                keys = dict.fromkeys(key for names in entry.metadata[_NAMES] for key in _split_names(values[names]))
+                inner_table = entry.metadata[_TABLE]
                 name = f"{prefix}{entry.metadata[_BELOW] or entry.name}"
-                values[entry.name] = {key: self.read(inside, f"{name}.{key}.") for key in keys}
+                values[entry.name] = {key: self.read(inner_table, f"{name}.{key}.") for key in keys}
             elif is_dataclass(kind):
                 values[entry.name] = self.read(kind, f"{name}.")
             else:
                 default = entry.default if entry.default is not MISSING else None
-                about = entry.metadata.get(_ABOUT, _About())
-                if usual is not None:
-                    default = getattr(usual, entry.name)
-                elif about.later is not _SAME and not is_before_iron():
-                    default = about.later
-                values[entry.name] = self._value(_Declaration(name, _TYPES[kind], default, about))
+                details = entry.metadata.get(_DETAILS, _Details())
+                if defaults is not None:
+                    default = getattr(defaults, entry.name)
+                elif details.later is not _UNCHANGED and not is_before_iron():
+                    default = details.later
+                values[entry.name] = self._value(_Declaration(name, _TYPES[kind], default, details))
         return table(**values)
 
-    def _value(self, wanted: _Declaration) -> Any:
-        name, about = wanted.name, wanted.about
+    def _value(self, declaration: _Declaration) -> Any:
+        name, details = declaration.name, declaration.about
         if name not in self.declared:
-            if about.only not in ("", _distribution()) and name not in self._node.undeclared_overrides():
-                return wanted.default
+            if details.only not in ("", _distribution()) and name not in self._node.undeclared_overrides():
+                return declaration.default
             descriptor = ParameterDescriptor(
-                type=wanted.kind.value, description=about.description, read_only=about.read_only
+                type=declaration.kind.value, description=details.description, read_only=details.read_only
             )
-            default = list(wanted.default) if isinstance(wanted.default, tuple) else wanted.default
+            default = list(declaration.default) if isinstance(declaration.default, tuple) else declaration.default
             if not self._node.has_parameter(name):
-                self._node.declare_parameter(name, wanted.kind if default is None else default, descriptor)
-            self.declared[name] = wanted
+                self._node.declare_parameter(name, declaration.kind if default is None else default, descriptor)
+            self.declared[name] = declaration
             value = self._get(name)
-            wrong = about.check(name, value) if about.check is not None and value is not None else None
-            if wrong is not None:
-                raise LinkwrightError(Diagnostic("CTL101", wrong))
+            problem = details.check(name, value) if details.check is not None and value is not None else None
+            if problem is not None:
+                raise LinkwrightError(Diagnostic("CTL101", problem))
             return value
         return self._get(name)
 
@@ -237,13 +236,13 @@ def _distribution() -> str:
     return HUMBLE if is_before_iron() else JAZZY
 
 
-def _listed(names: Any) -> Iterable[str]:
+def _split_names(names: Any) -> Iterable[str]:
     """Return the names in a parameter value, which is a string or a sequence of strings."""
     return (names,) if isinstance(names, str) else names
 
 
 @cache
-def _kinds(table: Hashable) -> Mapping[str, Any]:
+def _field_types(table: Hashable) -> Mapping[str, Any]:
     return get_type_hints(table)
 
 

@@ -30,7 +30,7 @@ def declare_required(node: Node, name: str, kind: ParameterType, usage: str) -> 
     node.declare_parameter(name, kind)
     value = node.get_parameter_or(name, Parameter(name)).value
     if value is None:
-        message = phrase("parameter '{name}' of '{node}' is not given", name=name, node=node.get_name())
+        message = phrase("parameter '{name}' of '{node}' has no value", name=name, node=node.get_name())
         raise LinkwrightError(Diagnostic("NODE431", message, hint=phrase("usage: {usage}", usage=usage)))
     return value
 
@@ -61,7 +61,7 @@ def _converted(word: str, name: str, convert: Callable[[str], Any], hint: Phrase
     try:
         return convert(word)
     except ValueError:
-        message = phrase("'{word}' is not a value of '{name}'", word=word, name=name)
+        message = phrase("'{word}' is not a valid value for '{name}'", word=word, name=name)
         raise LinkwrightError(Diagnostic("NODE432", message, hint=hint)) from None
 
 

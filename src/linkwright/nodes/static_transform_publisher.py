@@ -40,8 +40,8 @@ _OLD_WITH_QUATERNION = (*_TRANSLATION, *_QUATERNION, *_FRAMES)
 class StaticTransform:
     """The pose of the child frame in the parent frame, from the command line.
 
-    The position is in metres, the orientation a unit quaternion x y z w. `old_style` is true if the values were
-    positional arguments, which tf2_ros calls deprecated.
+    The translation is in metres. The rotation is a unit quaternion (x, y, z, w). `old_style` is true if the values were
+    positional arguments, which are deprecated in tf2_ros.
     """
 
     translation: tuple[float, float, float]
@@ -52,30 +52,30 @@ class StaticTransform:
 
 
 def parse_arguments(arguments: Sequence[str]) -> StaticTransform:
-    """Parse the command line, with named options or the older eight or nine positional values.
+    """Parse a command line with named options, or with eight or nine positional values in the old style.
 
     The positional forms are ``x y z yaw pitch roll frame child`` and ``x y z qx qy qz qw frame child``.
 
     Raises:
-        LinkwrightError: the command line is invalid; the message is tf2_ros's.
+        LinkwrightError: if the command line is invalid, with the message of tf2_ros.
     """
-    given, positional = _split(arguments)
+    options, positional = _split_arguments(arguments)
     old_style = bool(positional)
     if old_style:
         names = {8: _OLD_WITH_ANGLES, 9: _OLD_WITH_QUATERNION}.get(len(positional))
         if names is None:
             raise _usage_error(phrase("Extra unparsed arguments on command-line"))
-        if given:
+        if options:
             raise _usage_error(phrase("Cannot specify both new-style (flags) and old-style (arguments)"))
-        given = dict(zip(names, positional, strict=True))
-    if any(name in given for name in _ANGLES) and any(name in given for name in _QUATERNION):
+        options = dict(zip(names, positional, strict=True))
+    if any(name in options for name in _ANGLES) and any(name in options for name in _QUATERNION):
         raise _usage_error(phrase("Cannot specify both quaternion and Euler rotations"))
-    for name, what in zip(_FRAMES, ("Frame id", "Child frame id"), strict=True):
-        if not given.get(name):
-            raise _usage_error(phrase("{what} must not be empty", what=what))
-    x, y, z = (_number(given, name, 0.0) for name in _TRANSLATION)
+    for name, label in zip(_FRAMES, ("Frame id", "Child frame id"), strict=True):
+        if not options.get(name):
+            raise _usage_error(phrase("{what} must not be empty", what=label))
+    x, y, z = (_number(options, name, 0.0) for name in _TRANSLATION)
     return StaticTransform(
-        (x, y, z), _rotation(given), given["--frame-id"], given["--child-frame-id"], old_style=old_style
+        (x, y, z), _rotation(options), options["--frame-id"], options["--child-frame-id"], old_style=old_style
     )
 
 
@@ -83,13 +83,13 @@ class StaticTransformPublisher(SingleNode):
     """The running static_transform_publisher node.
 
     Raises:
-        LinkwrightError: NODE301, the command line is invalid.
+        LinkwrightError: NODE301 if the command line is invalid.
     """
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, arguments = create_node(graph, options, f"static_transform_publisher_{_random_suffix()}")
         self.finished: asyncio.Future[int] = asyncio.get_running_loop().create_future()
-        if any(word in ("-h", "--help") for word in arguments):
+        if any(argument in ("-h", "--help") for argument in arguments):
             options.output(HELP)
             self.finished.set_result(0)
             return
@@ -121,34 +121,34 @@ def _random_suffix() -> str:
     return "".join(secrets.choice(string.ascii_letters + string.digits) for _ in range(16))
 
 
-def _split(arguments: Sequence[str]) -> tuple[dict[str, str], list[str]]:
-    named, positional = {}, []
-    known = {*_TRANSLATION, *_QUATERNION, *_ANGLES, *_FRAMES}
-    waiting = iter(arguments)
-    for argument in waiting:
-        if argument in known:
-            value = next(waiting, None)
+def _split_arguments(arguments: Sequence[str]) -> tuple[dict[str, str], list[str]]:
+    options, positional = {}, []
+    option_names = {*_TRANSLATION, *_QUATERNION, *_ANGLES, *_FRAMES}
+    remaining_arguments = iter(arguments)
+    for argument in remaining_arguments:
+        if argument in option_names:
+            value = next(remaining_arguments, None)
             if value is None:
                 raise _usage_error(phrase("Not enough arguments for {argument}", argument=argument))
-            named[argument] = value
+            options[argument] = value
         else:
             positional.append(argument)
-    return named, positional
+    return options, positional
 
 
-def _rotation(given: dict[str, str]) -> tuple[float, float, float, float]:
-    if any(name in given for name in _ANGLES):
-        x, y, z, w = quaternion_from_rpy([_number(given, name, 0.0) for name in _ANGLES]).tolist()
+def _rotation(options: dict[str, str]) -> tuple[float, float, float, float]:
+    if any(name in options for name in _ANGLES):
+        x, y, z, w = quaternion_from_rpy([_number(options, name, 0.0) for name in _ANGLES]).tolist()
         return x, y, z, w
-    x, y, z = (_number(given, name, 0.0) for name in _QUATERNION[:3])
-    w = _number(given, "--qw", 1.0)
+    x, y, z = (_number(options, name, 0.0) for name in _QUATERNION[:3])
+    w = _number(options, "--qw", 1.0)
     if x == y == z == w == 0.0:
         raise _usage_error(phrase("The quaternion must not be zero"))
     return normalized(x, y, z, w)
 
 
-def _number(given: dict[str, str], name: str, default: float) -> float:
-    text = given.get(name)
+def _number(options: dict[str, str], name: str, default: float) -> float:
+    text = options.get(name)
     if text is None:
         return default
     try:

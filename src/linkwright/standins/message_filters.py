@@ -14,17 +14,17 @@ from linkwright.graph.time.clock import ROSClock
 from linkwright.graph.time.values import Duration, Time
 from linkwright.standins.rclpy_api.logging import get_logger
 
-_HEADERLESS = (
+_HEADERLESS_WARNING = (
     "can not use message filters messages without timestamp infomation when 'allow_headerless' is disabled. "
     "auto assign ROSTIME to headerless messages once enabling constructor option of 'allow_headerless'."
 )
 
 
 class SimpleFilter:
-    """The base class of filters: an output to which callbacks and other filters are connected.
+    """The base class of filters; callbacks and other filters can be connected to its output.
 
     Attributes:
-        callbacks: registration number -> the callback and its additional arguments.
+        callbacks: the callback and its additional arguments, by registration number.
     """
 
     def __init__(self) -> None:
@@ -34,12 +34,12 @@ class SimpleFilter:
         """Register a callback for each output, and return the key of its entry in `callbacks`.
 
         Args:
-            cb: the callback, called with the output followed by `args`.
+            cb: the callback; its arguments are the output, followed by `args`.
             args: additional arguments of the callback.
         """
-        number = len(self.callbacks)
-        self.callbacks[number] = (cb, args)
-        return number
+        registration_number = len(self.callbacks)
+        self.callbacks[registration_number] = (cb, args)
+        return registration_number
 
     def signalMessage(self, *msg: Any) -> None:
         """Call the callbacks with a message, or with the messages of a set."""
@@ -48,7 +48,7 @@ class SimpleFilter:
 
 
 class Subscriber(SimpleFilter):
-    """A subscription as the first filter of a chain, with the attributes of the subscription.
+    """A subscription as the first filter of a chain; it also has the attributes of the subscription.
 
     Args:
         node: the node that subscribes.
@@ -82,9 +82,9 @@ class Cache(SimpleFilter):
     """Caches the newest messages of a filter for lookups by time, and forwards each message.
 
     Args:
-        f: the filter.
+        f: the filter whose messages are cached.
         cache_size: the maximum number of messages.
-        allow_headerless: whether to accept messages without a stamp, for which the time of arrival is used.
+        allow_headerless: whether to accept messages without a stamp, and use their time of arrival.
     """
 
     def __init__(self, f: SimpleFilter, cache_size: int = 1, allow_headerless: bool = False) -> None:
@@ -101,7 +101,7 @@ class Cache(SimpleFilter):
 
     def add(self, msg: Any) -> None:
         """Add a message, and drop the oldest one if the cache is full."""
-        stamp = _time_of(msg, allow_headerless=self.allow_headerless, logger="message_filters_cache")
+        stamp = _time_of_message(msg, allow_headerless=self.allow_headerless, logger="message_filters_cache")
         if stamp is None:
             return
         self.cache_msgs.append(msg)
@@ -146,11 +146,11 @@ class TimeSynchronizer(SimpleFilter):
     """Outputs sets of messages, one from each filter, that have the same stamp.
 
     Args:
-        fs: the filters.
+        fs: the filters whose messages are matched.
         queue_size: the maximum number of queued messages of each filter.
 
     Attributes:
-        queues: for each filter, stamp in nanoseconds -> the queued message.
+        queues: the queued messages of each filter, by their stamp in nanoseconds.
     """
 
     def __init__(self, fs: Sequence[SimpleFilter], queue_size: int) -> None:
@@ -170,9 +170,9 @@ class TimeSynchronizer(SimpleFilter):
     def add(self, msg: Any, my_queue: dict[int, Any], my_queue_index: int | None = None) -> None:
         """Add a message of one of the filters, and output a set if the message completes one."""
         with self.lock:
-            self._store(msg, my_queue, _time(msg.header.stamp).nanoseconds)
-            common = set(self.queues[0]).intersection(*self.queues[1:])
-            matches = [[queue.pop(stamp) for queue in self.queues] for stamp in sorted(common)]
+            self._store(msg, my_queue, _as_time(msg.header.stamp).nanoseconds)
+            common_stamps = set(self.queues[0]).intersection(*self.queues[1:])
+            matches = [[queue.pop(stamp) for queue in self.queues] for stamp in sorted(common_stamps)]
         for match in matches:
             self.signalMessage(*match)
 
@@ -183,13 +183,13 @@ class TimeSynchronizer(SimpleFilter):
 
 
 class ApproximateTimeSynchronizer(TimeSynchronizer):
-    """Outputs sets of messages, one from each filter, whose stamps are close together.
+    """Outputs sets of messages, one from each filter, that have similar stamps.
 
     Args:
-        fs: the filters.
+        fs: the filters whose messages are matched.
         queue_size: the maximum number of queued messages of each filter.
-        slop: the maximum difference of the stamps in a set, in seconds.
-        allow_headerless: whether to accept messages without a stamp, for which the time of arrival is used.
+        slop: the maximum difference between the stamps in a set, in seconds.
+        allow_headerless: whether to accept messages without a stamp, and use their time of arrival.
         sync_arrival_time: whether to use the time of arrival instead of the stamp for all messages.
     """
 
@@ -207,11 +207,11 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
         self.sync_arrival_time = sync_arrival_time
 
     def add(self, msg: Any, my_queue: dict[int, Any], my_queue_index: int | None = None) -> None:
-        """Add a message of one of the filters, and output the set of closest messages, if complete."""
+        """Add a message of one of the filters, and output a set if each filter has a similar stamp."""
         if self.sync_arrival_time:
             time: Time | None = ROSClock().now()
         else:
-            time = _time_of(msg, allow_headerless=self.allow_headerless, logger="message_filters_approx")
+            time = _time_of_message(msg, allow_headerless=self.allow_headerless, logger="message_filters_approx")
         if time is None:
             return
         with self.lock:
@@ -221,17 +221,19 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
         if match is not None:
             self.signalMessage(*match)
 
-    def _match(self, stamp: int, own: int | None) -> tuple[int, ...] | None:
+    def _match(self, stamp: int, own_index: int | None) -> tuple[int, ...] | None:
         """Return the stamps of the messages that match a new message, in the order of the filters.
 
-        The result is None if a filter has no matching message.
+        Return None if a filter has no matching message.
         """
         slop = self.slop.nanoseconds
-        choices = []
+        candidates_by_queue = []
         for index, queue in enumerate(self.queues):
-            near = [stamp] if index == own else [candidate for candidate in queue if abs(candidate - stamp) <= slop]
-            choices.append(sorted(near, key=lambda candidate: abs(candidate - stamp)))
-        for stamps in itertools.product(*choices):
+            candidates = (
+                [stamp] if index == own_index else [candidate for candidate in queue if abs(candidate - stamp) <= slop]
+            )
+            candidates_by_queue.append(sorted(candidates, key=lambda candidate: abs(candidate - stamp)))
+        for stamps in itertools.product(*candidates_by_queue):
             if max(stamps) - min(stamps) < slop and all(
                 candidate in queue for candidate, queue in zip(stamps, self.queues, strict=True)
             ):
@@ -239,19 +241,19 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
         return None
 
 
-def _time_of(msg: Any, *, allow_headerless: bool, logger: str) -> Time | None:
+def _time_of_message(msg: Any, *, allow_headerless: bool, logger: str) -> Time | None:
     """Return the stamp of a message, or its time of arrival if `allow_headerless` is set.
 
-    If neither is available, a warning is logged and the result is None.
+    Otherwise log a warning and return None.
     """
     stamp = getattr(getattr(msg, "header", None), "stamp", None)
     if stamp is not None:
-        return _time(stamp)
+        return _as_time(stamp)
     if allow_headerless:
         return ROSClock().now()
-    get_logger(logger).warning(_HEADERLESS)
+    get_logger(logger).warning(_HEADERLESS_WARNING)
     return None
 
 
-def _time(stamp: Any) -> Time:
+def _as_time(stamp: Any) -> Time:
     return stamp if isinstance(stamp, Time) else Time.from_msg(stamp)

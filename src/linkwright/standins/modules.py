@@ -1,8 +1,8 @@
 """Creates the modules that the tables describe, for imports such as ``from launch.actions import Shutdown``.
 
-`FOLDER` is a virtual folder for Python's path finder. `FOLDER` contains every package that has a table, and
-``FOLDER/launch`` contains the modules of ``launch``. Earlier entries of ``sys.path`` take precedence, package by
-package. `pkgutil` lists the modules like files. A name is imported on first use, from the origin in the table.
+For Python's path finder, `FOLDER` is a folder with every package that has a table, and ``FOLDER/launch`` is a folder
+with the modules of ``launch``, although these modules are not files. For each package, earlier entries of ``sys.path``
+take precedence. `pkgutil` lists the modules like files. A name is imported on first use, from the origin in the table.
 """
 
 from __future__ import annotations
@@ -23,23 +23,23 @@ FOLDER = str(table.FOLDER)
 
 
 def install() -> None:
-    """Make Python find the modules of `FOLDER`; may be called repeatedly."""
-    if _finder_of not in sys.path_hooks:
-        sys.path_hooks.insert(0, _finder_of)
+    """Make Python find the modules in `FOLDER`; repeated calls have no effect."""
+    if _finder_for not in sys.path_hooks:
+        sys.path_hooks.insert(0, _finder_for)
         for path in [path for path in sys.path_importer_cache if path.startswith(FOLDER)]:
             del sys.path_importer_cache[path]
 
 
 def find_spec(name: str) -> ModuleSpec | None:
     """Return the spec of a module, or None if no table describes the module."""
-    found = table.find(name)
-    if found is None:
+    module_table = table.find(name)
+    if module_table is None:
         return None
     spec = ModuleSpec(
         name,
-        _Loader(found),  # type: ignore[arg-type]  # a loader by its methods: the class takes long to import
+        _Loader(module_table),  # type: ignore[arg-type]  # a loader by its methods: the class takes long to import
         origin=str(table.FOLDER / f"{name.partition('.')[0]}.txt"),
-        is_package=bool(found.submodules) or "." not in name,
+        is_package=bool(module_table.submodules) or "." not in name,
     )
     spec.has_location = True
     if spec.submodule_search_locations is not None:
@@ -48,11 +48,11 @@ def find_spec(name: str) -> ModuleSpec | None:
 
 
 def is_ours(module: ModuleType | None) -> bool:
-    """Return whether a module was created by this module."""
+    """Return whether a module is a stand-in that was created from a table."""
     return isinstance(getattr(getattr(module, "__spec__", None), "loader", None), _Loader)
 
 
-def _finder_of(path: str) -> _Finder:
+def _finder_for(path: str) -> _Finder:
     """Return the finder for an entry of ``sys.path``, as a path hook of Python.
 
     Raises:
@@ -75,21 +75,21 @@ class _Finder:
 
     def iter_modules(self, prefix: str = "") -> Iterator[tuple[str, bool]]:
         """Yield the name of each module and whether it is a package, for `pkgutil`."""
-        found = table.find(self._package)
-        names = table.packages() if found is None else found.submodules
+        package_table = table.find(self._package)
+        names = table.packages() if package_table is None else package_table.submodules
         for name in names:
-            below = table.find(f"{self._package}.{name}" if self._package else name)
-            yield prefix + name, bool(below and below.submodules) or not self._package
+            submodule = table.find(f"{self._package}.{name}" if self._package else name)
+            yield prefix + name, bool(submodule and submodule.submodules) or not self._package
 
 
 class _Loader:
     """Creates a module that imports its names on first use."""
 
-    def __init__(self, described: table.Module) -> None:
-        self._described = described
+    def __init__(self, module_table: table.Module) -> None:
+        self._described = module_table
 
     def homes(self, name: str) -> list[str]:
-        """Return the modules that provide a name, for the error message if another module lacks it."""
+        """Return the modules that provide a name, for the error message if an import of the name fails."""
         return table.modules_providing(name)
 
     def create_module(self, spec: ModuleSpec) -> ModuleType | None:
@@ -98,33 +98,33 @@ class _Loader:
 
     def exec_module(self, module: ModuleType) -> None:
         """Fill the module with functions that import its names on first use."""
-        described = self._described
-        module.__doc__ = f"A stand-in for ``{described.name}``."
-        names = {**dict.fromkeys(described.names), **dict.fromkeys(described.submodules)}
+        module_table = self._described
+        module.__doc__ = f"A stand-in for ``{module_table.name}``."
+        names = {**dict.fromkeys(module_table.names), **dict.fromkeys(module_table.submodules)}
 
         def look_up(name: str) -> Any:
-            if name in described.names:
-                value = value_of(described, name)
-            elif name in described.submodules:
-                value = importlib.import_module(f"{described.name}.{name}")
-            elif described.others:
-                origin, _, function = described.others.rpartition(".")
+            if name in module_table.names:
+                value = value_of(module_table, name)
+            elif name in module_table.submodules:
+                value = importlib.import_module(f"{module_table.name}.{name}")
+            elif module_table.others:
+                origin, _, function = module_table.others.rpartition(".")
                 return getattr(importlib.import_module(origin), function)(name)
             else:
-                raise AttributeError(f"module '{described.name}' has no attribute '{name}'", name=name, obj=module)
+                raise AttributeError(f"module '{module_table.name}' has no attribute '{name}'", name=name, obj=module)
             setattr(module, name, value)
             return value
 
         own_names = {"__getattr__": look_up, "__dir__": lambda: sorted({*names, *vars(module)})}  # PEP 562
-        vars(module).update(own_names, __all__=described.public)
-        for name in described.submodules:
-            if name in described.names and described.names[name].origin != table.IMPORT:
+        vars(module).update(own_names, __all__=module_table.public)
+        for name in module_table.submodules:
+            if name in module_table.names and module_table.names[name].origin != table.IMPORT:
                 # If a function has the name of its submodule, import the submodule first. Otherwise a later import of
                 # the submodule would replace the function with the module.
-                importlib.import_module(f"{described.name}.{name}")
-                setattr(module, name, value_of(described, name))
-        if described.setup:
-            origin, _, function = described.setup.rpartition(".")
+                importlib.import_module(f"{module_table.name}.{name}")
+                setattr(module, name, value_of(module_table, name))
+        if module_table.setup:
+            origin, _, function = module_table.setup.rpartition(".")
             getattr(importlib.import_module(origin), function)()
 
 
@@ -135,10 +135,10 @@ def value_of(module: table.Module, name: str) -> Any:
         ImportError: the module that defines the name cannot be imported.
         AttributeError: that module does not define the name.
     """
-    found = module.names[name]
-    if found.origin == table.IMPORT:
-        inside = found.name in module.submodules
-        return importlib.import_module(f"{module.name}.{found.name}" if inside else found.name)
-    if found.origin == table.VALUE:
-        return literal_eval(found.name)
-    return getattr(importlib.import_module(found.origin), found.name)
+    entry = module.names[name]
+    if entry.origin == table.IMPORT:
+        is_submodule = entry.name in module.submodules
+        return importlib.import_module(f"{module.name}.{entry.name}" if is_submodule else entry.name)
+    if entry.origin == table.VALUE:
+        return literal_eval(entry.name)
+    return getattr(importlib.import_module(entry.origin), entry.name)

@@ -30,12 +30,12 @@ from linkwright.standins.recording_storage import (
 
 _Message = tuple[str, int, bytes]
 
-_STEP_NS = NANOSECONDS_PER_SECOND
-"""The size of a block when messages are read backwards."""
+_BLOCK_NS = NANOSECONDS_PER_SECOND
+"""The duration of the blocks in which messages are read backwards, in nanoseconds."""
 
 
 class CompressionMode(enum.Enum):
-    """The unit that is compressed: none, a file or a message."""
+    """Whether nothing, each file or each message is compressed."""
 
     NONE = 0
     FILE = 1
@@ -44,7 +44,7 @@ class CompressionMode(enum.Enum):
 
 @dataclass
 class CompressionOptions:
-    """The compression options; only zstd is supported, and performance options are ignored."""
+    """The compression format and mode; only zstd is supported, and performance options are ignored."""
 
     compression_format: str = ""
     compression_mode: CompressionMode = CompressionMode.NONE
@@ -54,7 +54,7 @@ class CompressionOptions:
 
 
 def compression_mode_from_string(name: str) -> CompressionMode:
-    """Return the mode with a name, ignoring case, or NONE if there is no such mode."""
+    """Return the mode for a name in upper or lower case, or NONE for any other name."""
     return CompressionMode.__members__.get(name.upper(), CompressionMode.NONE)
 
 
@@ -71,7 +71,7 @@ class SequentialReader:
         self._filter = StorageFilter()
         self._reverse = False
         self._start_ns: int | None = None
-        self._last: _Message | None = None
+        self._last_message: _Message | None = None
         self._stream: Iterator[_Message] = iter(())
         self._next: _Message | None = None
 
@@ -89,7 +89,7 @@ class SequentialReader:
         self.seek(None)
 
     def open_uri(self, uri: str) -> None:
-        """Open a recording, given its path, with default options."""
+        """Open the recording at a path with default options."""
         self.open(StorageOptions(uri))
 
     def close(self) -> None:
@@ -101,7 +101,7 @@ class SequentialReader:
         return self._next is not None
 
     def read_next(self) -> tuple[str, bytes, int]:
-        """Return the topic, the CDR bytes and the time of reception of the next message.
+        """Return the topic, the CDR bytes and the reception time of the next message.
 
         The time is in nanoseconds since the epoch.
 
@@ -110,7 +110,7 @@ class SequentialReader:
         """
         if self._next is None:
             raise RuntimeError("Bag is at end. No next message.")
-        topic, stamp_ns, data = self._last = self._next
+        topic, stamp_ns, data = self._last_message = self._next
         self._advance()
         return topic, data, stamp_ns
 
@@ -129,7 +129,7 @@ class SequentialReader:
         topics = [
             TopicInformation(
                 TopicMetadata(
-                    id=number,
+                    id=topic_id,
                     name=topic.name,
                     type=topic.type_name,
                     serialization_format=topic.serialization_format,
@@ -138,16 +138,16 @@ class SequentialReader:
                 ),
                 topic.count,
             )
-            for number, topic in enumerate(bag.topics, 1)
+            for topic_id, topic in enumerate(bag.topics, 1)
         ]
-        start, duration = _time(bag.start_ns), Duration(nanoseconds=bag.end_ns - bag.start_ns)
+        start_time, duration = _system_time(bag.start_ns), Duration(nanoseconds=bag.end_ns - bag.start_ns)
         files, count = [file.name for file in bag.files], sum(topic.count for topic in bag.topics)
         return BagMetadata(
             storage_identifier=bag.storage,
             relative_file_paths=files,
-            files=[FileInformation(files[0], start, duration, count)] if len(files) == 1 else _files(bag),
+            files=[FileInformation(files[0], start_time, duration, count)] if len(files) == 1 else _listed_files(bag),
             bag_size=sum(file.stat().st_size for file in bag.files),
-            starting_time=start,
+            starting_time=start_time,
             duration=duration,
             message_count=count,
             topics_with_message_count=topics,
@@ -156,9 +156,9 @@ class SequentialReader:
         )
 
     def set_filter(self, storage_filter: StorageFilter) -> None:
-        """Restrict further reading to the topics that a filter includes."""
+        """Return only messages of the topics that a filter includes from now on."""
         self._filter = storage_filter
-        self._continue()
+        self._reopen_stream()
 
     def reset_filter(self) -> None:
         """Remove the filter, so that further reading returns all topics."""
@@ -176,7 +176,7 @@ class SequentialReader:
         if read_order.sort_by is not ReadOrderSortBy.ReceivedTimestamp:
             raise RuntimeError(f"Not Implemented - {read_order.sort_by.name} read order")
         self._reverse = read_order.reverse
-        self._continue()
+        self._reopen_stream()
         return True
 
     def seek(self, timestamp: int | None) -> None:
@@ -185,34 +185,40 @@ class SequentialReader:
         The next message is the first one at or after this time. When reading backwards, it is the last one at or before
         this time.
         """
-        self._start_ns, self._last = timestamp, None
-        self._continue()
+        self._start_ns, self._last_message = timestamp, None
+        self._reopen_stream()
 
     def _opened(self) -> BagReader:
         if self._bag is None:
             raise RuntimeError("Bag is not open. Call open() before reading.")
         return self._bag
 
-    def _continue(self) -> None:
-        """Open the stream of messages behind the last message that was read."""
+    def _reopen_stream(self) -> None:
+        """Open the stream of messages that follow the last message that was read."""
         bag = self._opened()
         topics = [topic.name for topic in bag.topics if self._filter.admits(topic.name)]
         if not topics:
             self._stream = iter(())
-        elif self._last is None:
-            self._stream = self._from(topics, self._start_ns)
+        elif self._last_message is None:
+            self._stream = self._messages_from(topics, self._start_ns)
         else:
-            stamp_ns = self._last[1]
-            at_once = list(bag.messages((), stamp_ns, stamp_ns + 1))
+            stamp_ns = self._last_message[1]
+            simultaneous_messages = list(bag.messages((), stamp_ns, stamp_ns + 1))
             if self._reverse:
-                at_once.reverse()
-            rest = [message for message in at_once[at_once.index(self._last) + 1 :] if message[0] in topics]
-            self._stream = chain(rest, self._from(topics, stamp_ns + (-1 if self._reverse else 1)))
+                simultaneous_messages.reverse()
+            remaining_messages = [
+                message
+                for message in simultaneous_messages[simultaneous_messages.index(self._last_message) + 1 :]
+                if message[0] in topics
+            ]
+            self._stream = chain(
+                remaining_messages, self._messages_from(topics, stamp_ns + (-1 if self._reverse else 1))
+            )
         self._advance()
 
-    def _from(self, topics: Collection[str], stamp_ns: int | None) -> Iterator[_Message]:
+    def _messages_from(self, topics: Collection[str], stamp_ns: int | None) -> Iterator[_Message]:
         if self._reverse:
-            return _backwards(self._opened(), topics, stamp_ns)
+            return _messages_backwards(self._opened(), topics, stamp_ns)
         return self._opened().messages(topics, stamp_ns)
 
     def _advance(self) -> None:
@@ -223,27 +229,27 @@ class SequentialReader:
             raise RuntimeError(str(error)) from error
 
 
-def _backwards(bag: BagReader, topics: Collection[str], last_ns: int | None) -> Iterator[_Message]:
+def _messages_backwards(bag: BagReader, topics: Collection[str], last_ns: int | None) -> Iterator[_Message]:
     """Yield the messages of topics in reverse order, from the last one at or before `last_ns`.
 
     If `last_ns` is None, begin at the end of the recording.
     """
-    stop_ns, step_ns = (bag.end_ns if last_ns is None else min(last_ns, bag.end_ns)) + 1, _STEP_NS
+    stop_ns, step_ns = (bag.end_ns if last_ns is None else min(last_ns, bag.end_ns)) + 1, _BLOCK_NS
     while stop_ns > bag.start_ns:
-        found = list(bag.messages(topics, stop_ns - step_ns, stop_ns))
-        yield from reversed(found)
+        block = list(bag.messages(topics, stop_ns - step_ns, stop_ns))
+        yield from reversed(block)
         stop_ns -= step_ns
-        step_ns = _STEP_NS if found else 2 * step_ns
+        step_ns = _BLOCK_NS if block else 2 * step_ns
 
 
-def _files(bag: BagReader) -> list[FileInformation]:
+def _listed_files(bag: BagReader) -> list[FileInformation]:
     """Return the files that the ``metadata.yaml`` of a recording lists, or an empty list without one."""
     metadata = MetadataIo()
-    where = str(bag.path)
-    return metadata.read_metadata(where).files if metadata.metadata_file_exists(where) else []
+    folder = str(bag.path)
+    return metadata.read_metadata(folder).files if metadata.metadata_file_exists(folder) else []
 
 
-def _time(stamp_ns: int) -> Time:
+def _system_time(stamp_ns: int) -> Time:
     return Time(nanoseconds=stamp_ns, clock_type=ClockType.SYSTEM_TIME)
 
 
@@ -337,7 +343,7 @@ class SequentialWriter:
 class SequentialCompressionWriter(SequentialWriter):
     """A `SequentialWriter` for compressed recordings.
 
-    Without options, the compression of the storage format is used.
+    Without options, the storage format's own compression is used; sqlite3 has none.
     """
 
     def __init__(self, compression_options: CompressionOptions | None = None) -> None:
@@ -371,7 +377,7 @@ class LocalMessageDefinitionSource:
     """Provides the definitions of message types."""
 
     def get_full_text(self, root_topic_type: str) -> MessageDefinition:
-        """Return the definition of a type, which is empty for an unknown type."""
+        """Return the definition of a type; its text is empty if the type does not exist."""
         try:
             return MessageDefinition(root_topic_type, "ros2msg", schema_of(root_topic_type), type_hash(root_topic_type))
         except LinkwrightError:
@@ -389,7 +395,7 @@ def get_registered_compressors() -> set[str]:
 
 
 def get_registered_serializers() -> set[str]:
-    """Return an empty set, because no converters are needed for CDR, the only format."""
+    """Return an empty set, because CDR is the only serialization format and needs no converter."""
     return set()
 
 

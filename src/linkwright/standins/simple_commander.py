@@ -13,14 +13,14 @@ from linkwright.standins.rclpy_api.action import ActionClient
 from linkwright.standins.rclpy_api.node import Node
 from linkwright.standins.rclpy_api.session import spin_once, spin_until_future_complete
 
-_WAIT = 1.0
-"""Seconds between log messages about a missing server."""
-_STEP = 0.1
+_SERVER_WAIT_S = 1.0
+"""The time in seconds between log messages about a missing server."""
+_SPIN_STEP_S = 0.1
 _ACTIVE = "active"
 
 
 class TaskResult(Enum):
-    """The result of a task."""
+    """How a task ended; UNKNOWN until then."""
 
     UNKNOWN = 0
     SUCCEEDED = 1
@@ -28,12 +28,12 @@ class TaskResult(Enum):
     FAILED = 3
 
 
-_RESULTS = {
+_TASK_RESULTS = {
     GoalStatus.SUCCEEDED: TaskResult.SUCCEEDED,
     GoalStatus.ABORTED: TaskResult.FAILED,
     GoalStatus.CANCELED: TaskResult.CANCELED,
 }
-_ACTIONS = {
+_ACTION_TYPES = {
     "navigate_to_pose": "NavigateToPose",
     "navigate_through_poses": "NavigateThroughPoses",
     "follow_waypoints": "FollowWaypoints",
@@ -52,7 +52,7 @@ class BasicNavigator(Node):
     """Sends tasks to nav2; a task runs in the background until `isTaskComplete` returns True.
 
     Attributes:
-        initial_pose: the initial pose of the robot, as set by the user.
+        initial_pose: the initial pose of the robot in the map (geometry_msgs/PoseStamped).
         initial_pose_received: whether the localization has responded to the initial pose.
         feedback: the latest feedback of the task.
         status: the final status of the task (action_msgs/GoalStatus); None while it runs.
@@ -91,7 +91,7 @@ class BasicNavigator(Node):
         return self._begin("navigate_to_pose", pose=pose, behavior_tree=behavior_tree)
 
     def goThroughPoses(self, poses: Any, behavior_tree: str = "") -> bool:
-        """Navigate through all poses in order; return whether the goal was accepted."""
+        """Navigate through poses in order, without stopping; return whether the goal was accepted."""
         return self._begin("navigate_through_poses", poses=list(poses), behavior_tree=behavior_tree)
 
     def followWaypoints(self, poses: Any) -> bool:
@@ -108,18 +108,18 @@ class BasicNavigator(Node):
 
     def backup(self, backup_dist: float = 0.15, backup_speed: float = 0.025, time_allowance: float = 10) -> bool:
         """Drive straight back, in m and m/s; return whether the goal was accepted."""
-        return self._straight("backup", backup_dist, backup_speed, time_allowance)
+        return self._begin_straight("backup", backup_dist, backup_speed, time_allowance)
 
     def driveOnHeading(self, dist: float = 0.15, speed: float = 0.025, time_allowance: float = 10) -> bool:
         """Drive straight ahead, in m and m/s; return whether the goal was accepted."""
-        return self._straight("drive_on_heading", dist, speed, time_allowance)
+        return self._begin_straight("drive_on_heading", dist, speed, time_allowance)
 
     def assistedTeleop(self, time_allowance: float = 30) -> bool:
         """Allow teleoperation with collision avoidance; return whether the goal was accepted."""
         return self._begin("assisted_teleop", time_allowance=_duration(time_allowance))
 
     def cancelTask(self) -> None:
-        """Cancel the current task, if any."""
+        """Cancel the current task; without a task, do nothing."""
         self.info("Canceling current task.")
         if self.result_future is not None:
             spin_until_future_complete(self, self.goal_handle.cancel_goal_async())
@@ -132,27 +132,27 @@ class BasicNavigator(Node):
         """
         if self.result_future is None:
             return True
-        spin_until_future_complete(self, self.result_future, timeout_sec=_STEP)
-        answer = self.result_future.result() if self.result_future.done() else None
-        if answer is None:
+        spin_until_future_complete(self, self.result_future, timeout_sec=_SPIN_STEP_S)
+        response = self.result_future.result() if self.result_future.done() else None
+        if response is None:
             return False
-        self.status = answer.status
+        self.status = response.status
         if self.status != GoalStatus.SUCCEEDED:
             self.debug(f"Task with failed with status code: {self.status}")
         return True
 
     def getFeedback(self) -> Any:
-        """Return the latest feedback of the task, or None if none has arrived."""
+        """Return the latest feedback of the task, or None before the first feedback."""
         return self.feedback
 
     def getResult(self) -> TaskResult:
         """Return the result of the task."""
-        return _RESULTS.get(GoalStatus(self.status or 0), TaskResult.UNKNOWN)
+        return _TASK_RESULTS.get(GoalStatus(self.status or 0), TaskResult.UNKNOWN)
 
     # --- waiting ------------------------------------------------------------------------------------------------------
 
     def waitUntilNav2Active(self, navigator: str = "bt_navigator", localizer: str = "amcl") -> None:
-        """Wait until nav2 is active and the robot is localized."""
+        """Wait until nav2 is active and, with AMCL, the robot is localized."""
         if localizer != "robot_localization":
             self._waitForNodeToActivate(localizer)
         if localizer == "amcl":
@@ -169,28 +169,30 @@ class BasicNavigator(Node):
             The path (nav_msgs/Path), or None if planning failed.
         """
         request = {"start": start, "goal": goal, "planner_id": planner_id, "use_start": use_start}
-        return getattr(self._done("compute_path_to_pose", **request), "path", None)
+        return getattr(self._send_and_wait("compute_path_to_pose", **request), "path", None)
 
     def getPathThroughPoses(self, start: Any, goals: Any, planner_id: str = "", use_start: bool = False) -> Any:
         """Plan a path through several poses; see `getPath`."""
         request = {"start": start, "goals": list(goals), "planner_id": planner_id, "use_start": use_start}
-        return getattr(self._done("compute_path_through_poses", **request), "path", None)
+        return getattr(self._send_and_wait("compute_path_through_poses", **request), "path", None)
 
     def smoothPath(
         self, path: Any, smoother_id: str = "", max_duration: float = 2.0, check_for_collision: bool = False
     ) -> Any:
         """Return a smoothed path (nav_msgs/Path), or None if smoothing failed."""
         request = {"path": path, "smoother_id": smoother_id, "max_smoothing_duration": _duration(max_duration)}
-        return getattr(self._done("smooth_path", **request, check_for_collisions=check_for_collision), "path", None)
+        return getattr(
+            self._send_and_wait("smooth_path", **request, check_for_collisions=check_for_collision), "path", None
+        )
 
     # --- maps and costmaps --------------------------------------------------------------------------------------------
 
     def changeMap(self, map_filepath: str) -> bool:
         """Load another map; return whether the map was loaded."""
-        answer = self._call("nav2_msgs/srv/LoadMap", "map_server/load_map", map_url=map_filepath)
-        if answer.result != answer.RESULT_SUCCESS:
+        response = self._call("nav2_msgs/srv/LoadMap", "map_server/load_map", map_url=map_filepath)
+        if response.result != response.RESULT_SUCCESS:
             self.error("Change map request failed!")
-        return bool(answer.result == answer.RESULT_SUCCESS)
+        return bool(response.result == response.RESULT_SUCCESS)
 
     def clearAllCostmaps(self) -> None:
         """Clear the local and the global costmap."""
@@ -217,31 +219,31 @@ class BasicNavigator(Node):
 
     def lifecycleStartup(self) -> None:
         """Start nav2 through the lifecycle managers."""
-        self._manage("STARTUP")
+        self._manage_lifecycle("STARTUP")
 
     def lifecycleShutdown(self) -> None:
         """Shut nav2 down through the lifecycle managers."""
-        self._manage("SHUTDOWN")
+        self._manage_lifecycle("SHUTDOWN")
 
     # --- internals ----------------------------------------------------------------------------------------------------
 
-    def _straight(self, name: str, distance: float, speed: float, time_allowance: float) -> bool:
+    def _begin_straight(self, name: str, distance: float, speed: float, time_allowance: float) -> bool:
         target = get_message("geometry_msgs/msg/Point")(x=float(distance))
         return self._begin(name, target=target, speed=float(speed), time_allowance=_duration(time_allowance))
 
     def _begin(self, name: str, **goal: Any) -> bool:
-        """Send the goal of a task without waiting for its result; return whether it was accepted."""
+        """Send the goal of a task, and return whether it was accepted, without waiting for the result."""
         self.feedback, self.status, self.result_future = None, None, None
-        self.goal_handle = self._sent(name, goal, self._feedbackCallback)
+        self.goal_handle = self._send_goal(name, goal, self._feedbackCallback)
         if not self.goal_handle.accepted:
             self.error(f"{name} was rejected!")
             return False
         self.result_future = self.goal_handle.get_result_async()
         return True
 
-    def _done(self, name: str, **goal: Any) -> Any:
-        """Send a goal and wait for its result; return None unless the goal succeeded."""
-        handle = self._sent(name, goal, None)
+    def _send_and_wait(self, name: str, **goal: Any) -> Any:
+        """Send a goal, wait until it ends, and return its result, or None if it did not succeed."""
+        handle = self._send_goal(name, goal, None)
         if not handle.accepted:
             self.error(f"{name} was rejected!")
             return None
@@ -253,14 +255,14 @@ class BasicNavigator(Node):
             return None
         return future.result().result
 
-    def _sent(self, name: str, goal: dict[str, Any], on_feedback: Any) -> Any:
-        kind = get_action(f"nav2_msgs/action/{_ACTIONS[name]}")
+    def _send_goal(self, name: str, goal: dict[str, Any], feedback_callback: Any) -> Any:
+        action_type = get_action(f"nav2_msgs/action/{_ACTION_TYPES[name]}")
         if name not in self._actions:
-            self._actions[name] = ActionClient(self, kind, name)
+            self._actions[name] = ActionClient(self, action_type, name)
         client = self._actions[name]
-        while not client.wait_for_server(timeout_sec=_WAIT):
+        while not client.wait_for_server(timeout_sec=_SERVER_WAIT_S):
             self.info(f"'{name}' action server not available, waiting...")
-        future = client.send_goal_async(kind.Goal(**goal), on_feedback)
+        future = client.send_goal_async(action_type.Goal(**goal), feedback_callback)
         spin_until_future_complete(self, future)
         return future.result()
 
@@ -268,7 +270,7 @@ class BasicNavigator(Node):
         service = get_service(kind)
         client = self.create_client(service, name)
         try:
-            while not client.wait_for_service(timeout_sec=_WAIT):
+            while not client.wait_for_service(timeout_sec=_SERVER_WAIT_S):
                 self.info(f"{name} service not available, waiting...")
             future = client.call_async(service.Request(**request))
             spin_until_future_complete(self, future)
@@ -276,12 +278,12 @@ class BasicNavigator(Node):
         finally:
             self.destroy_client(client)
 
-    def _manage(self, command: str) -> None:
-        kind = "nav2_msgs/srv/ManageLifecycleNodes"
-        number = getattr(get_service(kind).Request, command)
+    def _manage_lifecycle(self, command: str) -> None:
+        manager_type = "nav2_msgs/srv/ManageLifecycleNodes"
+        command_number = getattr(get_service(manager_type).Request, command)
         for name, types in self.get_service_names_and_types():
-            if kind in types:
-                self._call(kind, name, command=number)
+            if manager_type in types:
+                self._call(manager_type, name, command=command_number)
 
     def _waitForNodeToActivate(self, node_name: str) -> None:
         state = "unknown"
@@ -289,14 +291,14 @@ class BasicNavigator(Node):
             state = self._call("lifecycle_msgs/srv/GetState", f"{node_name}/get_state").current_state.label
             self.debug(f"Result of get_state: {state}")
             if state != _ACTIVE:
-                spin_once(self, timeout_sec=_STEP)
+                spin_once(self, timeout_sec=_SPIN_STEP_S)
 
     def _waitForInitialPose(self) -> None:
         while not self.initial_pose_received:
             self.info("Setting initial pose")
             self._setInitialPose()
             self.info("Waiting for amcl_pose to be received")
-            spin_once(self, timeout_sec=_WAIT)
+            spin_once(self, timeout_sec=_SERVER_WAIT_S)
 
     def _setInitialPose(self) -> None:
         message = get_message("geometry_msgs/msg/PoseWithCovarianceStamped")()

@@ -1,4 +1,4 @@
-"""The tables of the public names in ROS modules, with the place where each name is implemented.
+"""Reads the tables of the public names in ROS modules, which say where each name is implemented.
 
 A table is a text file ``tables/<package>.txt``, in the order of the package's modules::
 
@@ -47,7 +47,7 @@ class Name:
 
 @dataclass(frozen=True, slots=True)
 class Remark:
-    """The reason why a name is missing, or the difference from the real one, in English and Chinese."""
+    """Why a name is missing, or how it differs from the real one, in English and Chinese."""
 
     english: str
     chinese: str
@@ -90,7 +90,7 @@ def packages() -> list[str]:
 
 @cache
 def read(package: str) -> dict[str, Module]:
-    """Return the modules of a package by full name; empty for a package without a table."""
+    """Return the table entries of a package's modules by full name, or an empty dict for a package without a table."""
     try:
         text = (FOLDER / f"{package}.txt").read_text(encoding="utf-8")
     except OSError:
@@ -99,24 +99,26 @@ def read(package: str) -> dict[str, Module]:
 
 
 def find(module: str) -> Module | None:
-    """Return the table entries of a module, or None if there are none."""
+    """Return the table entries of a module, or None if no table describes the module."""
     return read(module.partition(".")[0]).get(module)
 
 
 def modules_providing(name: str) -> list[str]:
     """Return the modules that provide a name, one per package, such as ``rclpy.node`` for ``Node``."""
-    found: dict[str, str] = {}
+    modules_by_package: dict[str, str] = {}
     for package in packages():
-        having = [
+        providers = [
             module.name
             for module in read(package).values()
             if name in module.names and module.names[name].origin.startswith("linkwright.") and "._" not in module.name
         ]
-        having = [module for module in having if module.rpartition(".")[0] not in having]
-        if having:  # of several modules in a package, prefer one whose name is part of the imported name
-            last = {module: module.rpartition(".")[2].replace("_", "") for module in having}
-            found[package] = min(having, key=lambda module: (last[module] not in name.lower(), len(module)))
-    return sorted(found.values())
+        providers = [module for module in providers if module.rpartition(".")[0] not in providers]
+        if providers:  # Prefer a module with a name that is part of the imported name.
+            short_names = {module: module.rpartition(".")[2].replace("_", "") for module in providers}
+            modules_by_package[package] = min(
+                providers, key=lambda module: (short_names[module] not in name.lower(), len(module))
+            )
+    return sorted(modules_by_package.values())
 
 
 def parse(text: str) -> dict[str, Module]:
@@ -126,38 +128,38 @@ def parse(text: str) -> dict[str, Module]:
         ValueError: a line is invalid; the message quotes the line.
     """
     modules: dict[str, Module] = {}
-    for line in _joined(text):
-        head, colon, rest = line.partition(":")
+    for line in _joined_lines(text):
+        key, colon, rest = line.partition(":")
         if line.startswith("["):
             name, _, since = line[1:].partition("]")
             module = modules[name] = Module(name, since.removeprefix(" since "))
-            parent, _, last = name.rpartition(".")
+            parent, _, submodule = name.rpartition(".")
             if parent:
-                modules[parent].submodules.append(last)
+                modules[parent].submodules.append(submodule)
             continue
-        word, _, what = head.partition(" ")
+        keyword, _, key_argument = key.partition(" ")
         if not colon or not modules:
             raise ValueError(f"not a line of a table: {line!r}")
-        if word in ("absent", "differs"):
+        if keyword in ("absent", "differs"):
             english, _, chinese = " ".join(rest.split()).partition(" | ")
-            remarks = module.absent if word == "absent" else module.differs
-            remarks.update(dict.fromkeys(what.split(), Remark(english, chinese)))
-        elif word == "setup":
+            remarks = module.absent if keyword == "absent" else module.differs
+            remarks.update(dict.fromkeys(key_argument.split(), Remark(english, chinese)))
+        elif keyword == "setup":
             module.setup = rest.strip()
-        elif word == "others":
+        elif keyword == "others":
             module.others = rest.strip()
-        elif word == VALUE:
-            module.names[what] = Name(VALUE, rest.strip())
+        elif keyword == VALUE:
+            module.names[key_argument] = Name(VALUE, rest.strip())
         else:
-            since = what.removeprefix("since ")
+            since = key_argument.removeprefix("since ")
             for pair in rest.split():
-                ours, _, theirs = pair.partition("=")
-                module.names[ours] = Name(word, theirs or ours, since)
+                own_name, _, origin_name = pair.partition("=")
+                module.names[own_name] = Name(keyword, origin_name or own_name, since)
     return modules
 
 
-def _joined(text: str) -> list[str]:
-    """Return the lines of a table, with continuation lines appended to the line that they continue."""
+def _joined_lines(text: str) -> list[str]:
+    """Return the lines of a table without comments, with continuation lines joined to the lines before them."""
     lines: list[str] = []
     for line in text.splitlines():
         if line[:1] in ("", "#"):

@@ -97,7 +97,7 @@ def _refuse_binary(data: bytes, name: str) -> None:
         hint = phrase("save the file as UTF-8")
     elif not beginning.lstrip().startswith(b"<"):
         message = phrase("'{name}' is not a text file", name=name)
-        hint = phrase("it has bytes like those of images, archives and programs; check that it is the intended file")
+        hint = phrase("it looks like an image, an archive or a program; check that it is the intended file")
     else:
         return
     source = SourceText(name, "")
@@ -108,7 +108,9 @@ def _decode(data: bytes, encoding: str, name: str, reason: Phrase) -> Decoded:
     try:
         return Decoded(data.decode(encoding), encoding)
     except LookupError:
-        message = phrase("'{name}' declares the unknown encoding '{encoding}'", name=name, encoding=encoding)
+        message = phrase(
+            ("'{name}' declares the encoding '{encoding}', which is not supported"), name=name, encoding=encoding
+        )
         raise LinkwrightError(Diagnostic("XML104", message, hint=phrase("save the file as UTF-8"))) from None
     except UnicodeDecodeError as error:
         before = data[: error.start].decode(encoding, "replace")

@@ -110,7 +110,7 @@ class MisplacedElement(Rule):
             yield self.report(
                 phrase("<{tag}> in {place} is not read", tag=child.tag, place=location_phrase(place)),
                 child,
-                hint=phrase("it belongs directly in {listed}", listed=listed),
+                hint=phrase("put it directly in {listed}", listed=listed),
             )
 
 

@@ -149,7 +149,7 @@ def add_include(world: WorldText, address: str, pose: Sequence[float]) -> tuple[
     """
     address = address.strip()
     if not address:
-        raise EditError(phrase("'{uri}' names no model", uri=address))
+        raise EditError(phrase("'{uri}' does not name a model", uri=address))
     found = world.finder.model(address, world.path.parent)
     if isinstance(found, Missing):
         raise EditError(found.reason)

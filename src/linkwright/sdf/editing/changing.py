@@ -35,21 +35,21 @@ from linkwright.xmltree import Element
 from linkwright.xmltree.patches import Replacement, indentation, newline_of
 
 _NEW_MASS = 1.0
-_FIRST = ("uri", "name")
-"""Elements behind which the pose of an include is inserted."""
+_TAGS_BEFORE_POSE = ("uri", "name")
+"""Child tags of an include after which its pose is inserted."""
 
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """The properties of an entity to change; None for properties that remain.
+    """Changes to the properties of an entity; None leaves a property unchanged.
 
     Attributes:
-        name: the name of the entity.
+        name: the current name of the entity.
         pose: the pose in the world: x, y, z in m, roll, pitch, yaw in rad.
         size: the size of a model that is one simple shape, as in `SimpleShape`.
         new_name: the new name.
         static: whether the model never moves.
-        colour: the colour of such a model or of a light: red, green, blue, alpha from 0 to 1.
+        colour: the colour of a simple shape or of a light: red, green, blue, alpha from 0 to 1.
     """
 
     name: str
@@ -64,8 +64,8 @@ def change(world: WorldText, changes: Iterable[Change]) -> WorldText:
     """Return a world with changes applied to models and lights.
 
     Args:
-        world: the world.
-        changes: the changes, at most one for each name.
+        world: the world to edit.
+        changes: at most one change for each entity.
 
     Raises:
         EditError: an entity cannot be changed in this way.
@@ -77,16 +77,16 @@ def change(world: WorldText, changes: Iterable[Change]) -> WorldText:
         values += _values(world.entity(edit.name), edit)
         if edit.pose is not None:
             poses[edit.name] = pose_in_world(edit.pose)
-    world = _with_poses(world, poses, values)
+    world = _set_world_poses(world, poses, values)
     names = {change.name: change.new_name for change in changes if change.new_name not in (None, change.name)}
-    return _with_names(world, {old: new for old, new in names.items() if new is not None})
+    return _rename_entities(world, {old: new for old, new in names.items() if new is not None})
 
 
 def copy(world: WorldText, names: Sequence[str], offset: Sequence[float]) -> tuple[WorldText, list[str]]:
     """Return a world with copies of models and lights.
 
     Args:
-        world: the world.
+        world: the world to edit.
         names: the entities to copy.
         offset: x, y, z in m from each entity to its copy.
 
@@ -100,15 +100,15 @@ def copy(world: WorldText, names: Sequence[str], offset: Sequence[float]) -> tup
         raise EditError(phrase("an offset has three numbers"))
     edits: list[Replacement] = []
     poses: dict[str, Pose] = {}
-    taken = set(world.taken)
+    used_names = set(world.taken)
     for name in dict.fromkeys(names):
         entity = world.entity(name)
-        free = world.free_name(name, taken)
-        taken.add(free)
+        copy_name = world.free_name(name, used_names)
+        used_names.add(copy_name)
         x, y, z = (a + b for a, b in zip(entity.place[:3], offset, strict=True))
-        poses[free] = Pose((x, y, z), pose_of_entity(entity).rpy)
-        edits.append(_copied(entity, free))
-    return _with_poses(world.edited(edits), poses), list(poses)
+        poses[copy_name] = Pose((x, y, z), pose_of_entity(entity).rpy)
+        edits.append(_copy_edit(entity, copy_name))
+    return _set_world_poses(world.edited(edits), poses), list(poses)
 
 
 def delete(world: WorldText, names: Iterable[str]) -> WorldText:
@@ -117,23 +117,23 @@ def delete(world: WorldText, names: Iterable[str]) -> WorldText:
     Raises:
         EditError: an entity does not exist, or a remaining element refers to it.
     """
-    gone = {name: world.entity(name) for name in names}
-    elements = {id(entity.element) for entity in gone.values()}
+    deleted_entities = {name: world.entity(name) for name in names}
+    elements = {id(entity.element) for entity in deleted_entities.values()}
     for child in world.element.elements():
         if id(child) in elements:
             continue
-        for element, attribute in _references_in(child):
+        for element, attribute in _child_references(child):
             head = referenced_name(element, attribute).partition(SEPARATOR)[0]
-            if head in gone:
-                where = child.attributes.get("name") or child.tag
-                raise EditError(phrase("'{name}' cannot be deleted: '{user}' refers to it", name=head, user=where))
-    edits = [writing.removed(entity.element) for entity in gone.values()]
-    edits += [writing.removed(entry) for name in gone for entry in state_of(world, name)]
+            if head in deleted_entities:
+                referrer = child.attributes.get("name") or child.tag
+                raise EditError(phrase("'{name}' cannot be deleted: '{user}' refers to it", name=head, user=referrer))
+    edits = [writing.removed(entity.element) for entity in deleted_entities.values()]
+    edits += [writing.removed(entry) for name in deleted_entities for entry in state_of(world, name)]
     return world.edited(edits)
 
 
 def pose_in_world(numbers: Sequence[float]) -> Pose:
-    """Return a pose from six numbers that a user has entered: x, y, z in m, roll, pitch, yaw in rad.
+    """Return the pose for six numbers from a user: x, y, z in m, roll, pitch, yaw in rad.
 
     Raises:
         EditError: the numbers are not finite, or there are not six of them.
@@ -145,25 +145,32 @@ def pose_in_world(numbers: Sequence[float]) -> Pose:
 
 
 def pose_of_entity(entity: Entity) -> Pose:
-    """Return the pose of an entity in the world, exactly as written if it is written in that frame."""
-    own = entity.pose
-    if own.pose.quaternion is None and not own.relative_to and transform_of(own.pose) == entity.place:
-        return own.pose
+    """Return the pose of an entity in the world.
+
+    If the file gives the pose in the world frame, it is returned exactly as written.
+    """
+    written_pose = entity.pose
+    if (
+        written_pose.pose.quaternion is None
+        and not written_pose.relative_to
+        and transform_of(written_pose.pose) == entity.place
+    ):
+        return written_pose.pose
     return writing.pose_from(entity.place)
 
 
 def moved(world: WorldText, entity: Entity, pose: Pose) -> list[Replacement]:
     """Return the edits that move an entity to a pose in the world.
 
-    The entity's own pose may be given in any frame. Its poses in a saved state are also changed.
+    The pose is written in the frame that the entity already uses. Poses in a saved state are also changed.
 
     Raises:
         EditError: the frame of the entity's pose does not exist.
     """
-    wanted = transform_of(pose)
-    edits = place(entity, _local(world, entity, pose))
+    new_transform = transform_of(pose)
+    edits = place(entity, _pose_in_written_frame(world, entity, pose))
     for entry in state_of(world, entity.name):
-        edits += _move_state_edits(entry, entity.place, wanted, pose)
+        edits += _move_state_edits(entry, entity.place, new_transform, pose)
     return edits
 
 
@@ -172,19 +179,23 @@ def place(entity: Entity, pose: Pose) -> list[Replacement]:
     element = entity.element.first("pose")
     if element is not None:
         return writing.set_pose(element, pose)
-    after = _FIRST if isinstance(entity.written, Include) else ()
-    return [writing.inserted_in(entity.element, [writing.pose_element(pose)], after=after, first=not after)]
+    preceding_tags = _TAGS_BEFORE_POSE if isinstance(entity.written, Include) else ()
+    return [
+        writing.inserted_in(
+            entity.element, [writing.pose_element(pose)], after=preceding_tags, first=not preceding_tags
+        )
+    ]
 
 
 def state_of(world: WorldText, name: str) -> list[Element]:
-    """Return the entries of the last saved state for an entity."""
+    """Return the elements of the last saved state that describe an entity."""
     state = world.state
     entries = () if state is None else (*state.elements("model"), *state.elements("light"))
     return [entry for entry in entries if entry.attributes.get("name") == name]
 
 
 def referenced_name(element: Element, attribute: str | None) -> str:
-    """Return the name to which an element refers, in an attribute or, if it is None, in the text."""
+    """Return the name in a reference: the value of an attribute, or the element's text if `attribute` is None."""
     return element.text().strip() if attribute is None else element.attributes[attribute]
 
 
@@ -210,14 +221,16 @@ def rename_references(world: WorldText, names: dict[str, str]) -> list[Replaceme
 # --- simple properties ---------------------------------------------------------------------------------------------
 
 
-def _values(entity: Entity, wanted: Change) -> list[Replacement]:
+def _values(entity: Entity, requested_change: Change) -> list[Replacement]:
     edits: list[Replacement] = []
-    if wanted.size is not None and (entity.shape is None or tuple(wanted.size) != entity.shape.size):
-        edits += _size_edits(entity, tuple(wanted.size))
-    if wanted.colour is not None:
-        edits += _coloured(entity, wanted.colour)
-    if wanted.static is not None and wanted.static != entity.static:
-        edits += _static(entity, wanted.static, wanted.size)
+    if requested_change.size is not None and (
+        entity.shape is None or tuple(requested_change.size) != entity.shape.size
+    ):
+        edits += _size_edits(entity, tuple(requested_change.size))
+    if requested_change.colour is not None:
+        edits += _colour_edits(entity, requested_change.colour)
+    if requested_change.static is not None and requested_change.static != entity.static:
+        edits += _static(entity, requested_change.static, requested_change.size)
     return edits
 
 
@@ -233,25 +246,25 @@ def _size_edits(entity: Entity, size: tuple[float, ...]) -> list[Replacement]:
     link = entity.written.links[0]
     edits: list[Replacement] = []
     shapes: tuple[Visual | Collision, ...] = (*link.visuals, *link.collisions)
-    for part in shapes:
-        assert part.element is not None, "it was read from the text"
+    for shape_element in shapes:
+        assert shape_element.element is not None, "it was read from the text"
         for new in geometry(shape.kind, size):
-            edits += _copy_values(part.element, new)
+            edits += _copy_values(shape_element.element, new)
     before, after = solid(shape.kind, shape.size), solid(shape.kind, size)
-    found = link.inertial
-    if found is not None and found.element is not None and not found.auto and before.mass > 0:
-        properties = after.with_mass(found.mass * after.mass / before.mass)
-        edits += writing.set_child(found.element, "mass", number(properties.mass))
-        old = found.element.first("pose")
-        if old is not None and properties.center.any():
+    old_inertial = link.inertial
+    if old_inertial is not None and old_inertial.element is not None and not old_inertial.auto and before.mass > 0:
+        properties = after.with_mass(old_inertial.mass * after.mass / before.mass)
+        edits += writing.set_child(old_inertial.element, "mass", number(properties.mass))
+        old_pose = old_inertial.element.first("pose")
+        if old_pose is not None and properties.center.any():
             x, y, z = properties.center.tolist()
-            edits += writing.set_pose(old, Pose((x, y, z)))
-        inertia = found.element.first("inertia")
+            edits += writing.set_pose(old_pose, Pose((x, y, z)))
+        inertia = old_inertial.element.first("inertia")
         if inertia is None:
             new = new_element(
                 "inertia", *(new_element(tag, text) for tag, text in tensor(properties).items() if text != "0")
             )
-            edits.append(writing.inserted_in(found.element, [new]))
+            edits.append(writing.inserted_in(old_inertial.element, [new]))
         else:
             for tag, text in tensor(properties).items():
                 if inertia.first(tag) is not None or text != "0":
@@ -265,29 +278,29 @@ def _copy_values(owner: Element, new: Element) -> list[Replacement]:
     If there is no child with the same tag, the new element is inserted.
     """
     edits: list[Replacement] = []
-    found = list(owner.elements(new.tag))
-    if not found:
+    existing_children = list(owner.elements(new.tag))
+    if not existing_children:
         return [writing.inserted_in(owner, [new])]
     children = list(new.elements())
     if new.tag == "pose":
         x, y, z, roll, pitch, yaw = (float(word) for word in new.text().split())
-        return writing.set_pose(found[0], Pose((x, y, z), (roll, pitch, yaw)))
+        return writing.set_pose(existing_children[0], Pose((x, y, z), (roll, pitch, yaw)))
     if not children:
         numbers = [float(word) for word in new.text().split()]
-        return writing.set_numbers(found[0], numbers)
-    several: dict[str, int] = {}
+        return writing.set_numbers(existing_children[0], numbers)
+    tag_counts: dict[str, int] = {}
     for child in children:
-        index = several.get(child.tag, 0)
-        several[child.tag] = index + 1
-        theirs = list(found[0].elements(child.tag))
-        if index < len(theirs) and not any(True for _ in child.elements()):
-            edits += writing.set_numbers(theirs[index], [float(word) for word in child.text().split()])
+        index = tag_counts.get(child.tag, 0)
+        tag_counts[child.tag] = index + 1
+        matching_children = list(existing_children[0].elements(child.tag))
+        if index < len(matching_children) and not any(True for _ in child.elements()):
+            edits += writing.set_numbers(matching_children[index], [float(word) for word in child.text().split()])
         else:
-            edits += _copy_values(found[0], child)
+            edits += _copy_values(existing_children[0], child)
     return edits
 
 
-def _coloured(entity: Entity, colour: Sequence[float]) -> list[Replacement]:
+def _colour_edits(entity: Entity, colour: Sequence[float]) -> list[Replacement]:
     if len(colour) != 4 or not all(isfinite(value) and 0 <= value <= 1 for value in colour):
         raise EditError(phrase("a colour has four numbers from 0 to 1: red green blue alpha"))
     if entity.kind == "light" and not isinstance(entity.written, Include):
@@ -299,20 +312,20 @@ def _coloured(entity: Entity, colour: Sequence[float]) -> list[Replacement]:
         assert visual.element is not None, "it was read from the text"
         material = visual.element.first("material")
         if material is None:
-            text = lengths(tuple(colour))
-            parts = (new_element("ambient", text), new_element("diffuse", text))
-            edits.append(writing.inserted_in(visual.element, [new_element("material", *parts)]))
+            colour_text = lengths(tuple(colour))
+            colour_elements = (new_element("ambient", colour_text), new_element("diffuse", colour_text))
+            edits.append(writing.inserted_in(visual.element, [new_element("material", *colour_elements)]))
             continue
-        script = material.first("script")  # the script would override the colours
-        missing = [tag for tag in ("ambient", "diffuse") if material.first(tag) is None]
+        script = material.first("script")  # The script would override the colours.
+        missing_tags = [tag for tag in ("ambient", "diffuse") if material.first(tag) is None]
         for tag in ("ambient", "diffuse"):
-            if tag not in missing:
+            if tag not in missing_tags:
                 edits += writing.set_child(material, tag, colour)
-        new = [new_element(tag, lengths(tuple(colour))) for tag in missing]
+        missing_elements = [new_element(tag, lengths(tuple(colour))) for tag in missing_tags]
         if script is not None:
-            edits.append(writing.replace_element(script, new))
-        elif new:
-            edits.append(writing.inserted_in(material, new))
+            edits.append(writing.replace_element(script, missing_elements))
+        elif missing_elements:
+            edits.append(writing.inserted_in(material, missing_elements))
     return edits
 
 
@@ -324,26 +337,28 @@ def _static(entity: Entity, static: bool, size: Sequence[float] | None) -> list[
     if child is not None:
         edits = writing.set_text(child, text)
     else:
-        after = ("uri", "name", "pose") if isinstance(entity.written, Include) else ("pose",)
-        first = entity.element.first("pose") is None and not isinstance(entity.written, Include)
-        edits = [writing.inserted_in(entity.element, [new_element("static", text)], after=after, first=first)]
+        preceding_tags = ("uri", "name", "pose") if isinstance(entity.written, Include) else ("pose",)
+        is_first = entity.element.first("pose") is None and not isinstance(entity.written, Include)
+        edits = [
+            writing.inserted_in(entity.element, [new_element("static", text)], after=preceding_tags, first=is_first)
+        ]
     if not static and entity.shape is not None and isinstance(entity.written, Model):
         link = entity.written.links[0]
         if link.inertial is None and link.element is not None:
-            new = inertial(entity.shape.kind, tuple(size or entity.shape.size), _NEW_MASS)
-            edits.append(writing.inserted_in(link.element, [new], first=True))
+            new_inertial = inertial(entity.shape.kind, tuple(size or entity.shape.size), _NEW_MASS)
+            edits.append(writing.inserted_in(link.element, [new_inertial], first=True))
     return edits
 
 
 # --- names ---------------------------------------------------------------------------------------------------------
 
 
-def _with_names(world: WorldText, names: dict[str, str]) -> WorldText:
+def _rename_entities(world: WorldText, names: dict[str, str]) -> WorldText:
     edits: list[Replacement] = []
     for old, new in names.items():
         entity = world.entity(old)
         world.check_name(new)
-        edits += _named(entity, new)
+        edits += _name_edits(entity, new)
         for entry in state_of(world, old):
             edits += writing.set_attribute(entry, "name", new)
     if len(set(names.values())) < len(names):
@@ -351,96 +366,101 @@ def _with_names(world: WorldText, names: dict[str, str]) -> WorldText:
     return world.edited([*edits, *rename_references(world, names)])
 
 
-def _named(entity: Entity, name: str) -> list[Replacement]:
+def _name_edits(entity: Entity, name: str) -> list[Replacement]:
     if isinstance(entity.written, Include):
         return writing.set_child(entity.element, "name", name, after=("uri",))
     return writing.set_attribute(entity.element, "name", name)
 
 
-def _copied(entity: Entity, name: str) -> Replacement:
+def _copy_edit(entity: Entity, name: str) -> Replacement:
     """Return the edit that inserts a copy of an entity after it, under another name.
 
     The copy is on separate lines if the entity is on separate lines.
     """
     text, (start, end) = writing.text_of(entity.element), writing.range_of(entity.element)
-    copy = text[start:end]
-    for edit in sorted(_named(entity, name), key=lambda edit: edit.start, reverse=True):
-        copy = copy[: edit.start - start] + edit.text + copy[edit.end - start :]
+    copy_text = text[start:end]
+    for edit in sorted(_name_edits(entity, name), key=lambda edit: edit.start, reverse=True):
+        copy_text = copy_text[: edit.start - start] + edit.text + copy_text[edit.end - start :]
     indent = indentation(text, start)
-    between = "" if indent is None else f"{newline_of(text)}{indent}"
-    return Replacement(end, end, between + copy)
+    separator = "" if indent is None else f"{newline_of(text)}{indent}"
+    return Replacement(end, end, separator + copy_text)
 
 
 # --- poses ---------------------------------------------------------------------------------------------------------
 
 
-def _with_poses(world: WorldText, poses: dict[str, Pose], edits: Sequence[Replacement] = ()) -> WorldText:
+def _set_world_poses(world: WorldText, poses: dict[str, Pose], edits: Sequence[Replacement] = ()) -> WorldText:
     """Return the world with `edits` applied and entities at new poses.
 
     An entity whose pose is relative to another entity is moved after that entity.
     """
-    alone = [name for name in poses if not world.entity(name).pose.relative_to]
-    edits = [*edits, *(edit for name in alone for edit in moved(world, world.entity(name), poses[name]))]
+    independent_names = [name for name in poses if not world.entity(name).pose.relative_to]
+    edits = [*edits, *(edit for name in independent_names for edit in moved(world, world.entity(name), poses[name]))]
     world = world.edited(edits)
-    for name in sorted(poses.keys() - set(alone), key=lambda name: (_depth(world, name), name)):
+    for name in sorted(poses.keys() - set(independent_names), key=lambda name: (_depth(world, name), name)):
         world = world.edited(moved(world, world.entity(name), poses[name]))
     return world
 
 
-def _local(world: WorldText, entity: Entity, pose: Pose) -> Pose:
-    """Return a pose in the world, expressed in the frame in which an entity's pose is given.
+def _pose_in_written_frame(world: WorldText, entity: Entity, pose: Pose) -> Pose:
+    """Convert a pose in the world to the frame in which an entity's ``<pose>`` is written.
 
     Raises:
-        EditError: this frame does not exist.
+        EditError: that frame does not exist.
     """
     relative_to = entity.pose.relative_to
-    placed = entity.model.placement_frame if entity.model is not None else ""
+    placement_frame = entity.model.placement_frame if entity.model is not None else ""
     if isinstance(entity.written, Model | Include):
-        placed = entity.written.placement_frame or placed
-    if not relative_to and not placed:
+        placement_frame = entity.written.placement_frame or placement_frame
+    if not relative_to and not placement_frame:
         return pose
     try:
-        local = compose(invert(world.frames.pose(relative_to)) if relative_to else IDENTITY, transform_of(pose))
-        if placed:
-            local = compose(local, world.frames.inside(entity.name).pose(placed))
+        local_transform = compose(
+            invert(world.frames.pose(relative_to)) if relative_to else IDENTITY, transform_of(pose)
+        )
+        if placement_frame:
+            local_transform = compose(local_transform, world.frames.inside(entity.name).pose(placement_frame))
     except FrameError as error:
         reason = phrase("'{name}' is relative to '{frame}', which cannot be placed", name=entity.name, frame=error.name)
         raise EditError(reason) from None
-    return writing.pose_from(local)
+    return writing.pose_from(local_transform)
 
 
 def _move_state_edits(entry: Element, old: Transform, new: Transform, pose: Pose) -> list[Replacement]:
-    """Return the edits that move an entity and its parts in the saved state, given in the world."""
-    by = compose(new, invert(old))
+    """Return the edits that move an entity and its parts in the saved state.
+
+    `old` and `new` are the poses of the entity in the world, and `pose` is the new pose as it is to be written.
+    """
+    displacement = compose(new, invert(old))
     edits: list[Replacement] = []
     for element in entry.walk():
-        written = element.first("pose") if element.tag in ("model", "link", "light") else None
-        if written is None:
+        pose_element = element.first("pose") if element.tag in ("model", "link", "light") else None
+        if pose_element is None:
             continue
         if element is entry:
-            edits += writing.set_pose(written, pose)
+            edits += writing.set_pose(pose_element, pose)
             continue
         try:
-            numbers = POSE_NUMBERS.read(written.text())
-            there = transform_of(pose_of(numbers, degrees=False, rotation_format="euler_rpy"))
+            numbers = POSE_NUMBERS.read(pose_element.text())
+            old_transform = transform_of(pose_of(numbers, degrees=False, rotation_format="euler_rpy"))
         except ValueError:
             continue
-        edits += writing.set_pose(written, writing.pose_from(compose(by, there)))
+        edits += writing.set_pose(pose_element, writing.pose_from(compose(displacement, old_transform)))
     return edits
 
 
 def _depth(world: WorldText, name: str) -> int:
     """Return the number of entities in the chain of relative poses that ends with an entity."""
-    depth, seen = 0, set[str]()
+    depth, visited_names = 0, set[str]()
     entity = world.entities.get(name)
-    while entity is not None and entity.name not in seen:
-        seen.add(entity.name)
+    while entity is not None and entity.name not in visited_names:
+        visited_names.add(entity.name)
         entity = world.entities.get(entity.pose.relative_to.partition(SEPARATOR)[0])
         depth += 1
     return depth
 
 
-def _references_in(child: Element) -> list[tuple[Element, str | None]]:
-    holder = Element("world")
-    holder.children.append(child)
-    return list(writing.references(holder))
+def _child_references(child: Element) -> list[tuple[Element, str | None]]:
+    wrapper = Element("world")
+    wrapper.children.append(child)
+    return list(writing.references(wrapper))

@@ -191,8 +191,8 @@ class SimulationServer:
         wanted = with_saved_state(world)
         changes = changes_to(wanted, simulation.scene.models, self._of_world)
         if surroundings(before) != surroundings(wanted):
-            changes = changes.with_all(simulation.scene.models, self._namespaces)
-        changes = changes.with_connected(simulation.scene.models, self._namespaces)
+            changes = changes.with_all_replaced(simulation.scene.models, self._namespaces)
+        changes = changes.with_connected_replaced(simulation.scene.models, self._namespaces)
         allow(check(wanted, simulation, (*changes.renewed, *changes.new), finder))
         renewed = tuple(replace(change, motion=motion_of(simulation, change.name)) for change in changes.renewed)
         simulation.set_world(world, finder)

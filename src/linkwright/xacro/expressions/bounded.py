@@ -23,17 +23,17 @@ class RefusalError(Exception):
 
 
 _MAX_EQUAL_HASHES = 1_000
-"""Python compares each of the keys that have one hash with each."""
-_MOST_COMPARED = 200_000_000
-"""Characters, in one call."""
-_MOST_NUMBERS = 1_000
-_QUICK_CODECS = frozenset({"utf-8", "utf-16", "utf-32", "ascii", "iso8859-1", "iso8859-15", "cp1252", "unicode-escape"})
-_MOST_CODED = 10_000
-"""Characters."""
-_SECONDS = 0.5
-"""The time limit of a regular expression, as for those of other files (decision 0020)."""
+"""The maximum number of keys with the same hash; Python compares every pair of such keys."""
+_MAX_COMPARISONS = 200_000_000
+"""The maximum number of character comparisons in one call."""
+_MAX_NUMBERS = 1_000
+_FAST_CODECS = frozenset({"utf-8", "utf-16", "utf-32", "ascii", "iso8859-1", "iso8859-15", "cp1252", "unicode-escape"})
+_MAX_CODEC_LENGTH = 10_000
+"""The maximum length of a value for a slow codec, in characters or bytes."""
+_TIMEOUT_SECONDS = 0.5
+"""The time limit of a regular expression, which is the same as in other files (decision 0020)."""
 
-HASHING = frozenset(
+HASHING_FUNCTIONS = frozenset(
     {
         *("set", "frozenset", "dict", "update", "union", "difference", "intersection", "symmetric_difference"),
         *("difference_update", "intersection_update", "issubset", "issuperset", "isdisjoint", "dotify"),
@@ -60,19 +60,19 @@ def checked_keys(value: Any) -> Any:
 
 
 def check_keys(items: Collection[Any]) -> None:
-    """Check that not too many different keys have the same hash.
+    """Raise if too many different keys have the same hash.
 
     Raises:
         RefusalError: if more than a thousand different keys have the same hash.
     """
-    for alike, count in Counter(map(_hash_of, items)).items():
+    for hash_value, count in Counter(map(_hash_of, items)).items():
         if (
             count > _MAX_EQUAL_HASHES
-            and len({repr(item) for item in items if _hash_of(item) == alike}) > _MAX_EQUAL_HASHES
+            and len({repr(item) for item in items if _hash_of(item) == hash_value}) > _MAX_EQUAL_HASHES
         ):
             raise RefusalError(
                 phrase(
-                    "more than {count:,} of the keys have the same hash, which real keys never do",
+                    "more than {count:,} keys have the same hash, which does not happen with ordinary keys",
                     count=_MAX_EQUAL_HASHES,
                 )
             )
@@ -85,24 +85,24 @@ def _hash_of(item: Any) -> int:
         return id(item)
 
 
-def _backwards(name: str) -> Callable[..., Any]:
-    def search(text: Any, part: Any, *rest: Any) -> Any:
-        if isinstance(part, (str, bytes)) and len(part) * len(text) > _MOST_COMPARED:
+def _bounded_search(name: str) -> Callable[..., Any]:
+    def search(text: Any, substring: Any, *bounds: Any) -> Any:
+        if isinstance(substring, (str, bytes)) and len(substring) * len(text) > _MAX_COMPARISONS:
             raise RefusalError(phrase("the strings are too long for '{name}'", name=name))
-        return getattr(text, name)(part, *rest)
+        return getattr(text, name)(substring, *bounds)
 
     return search
 
 
 def _rsplit(text: str, sep: str | None = None, maxsplit: int = -1) -> list[str]:
-    return text.rsplit() if sep is None and maxsplit == -1 else _backwards("rsplit")(text, sep, maxsplit)
+    return text.rsplit() if sep is None and maxsplit == -1 else _bounded_search("rsplit")(text, sep, maxsplit)
 
 
 def _bounded_strip(name: str) -> Callable[..., Any]:
     def strip(text: str, characters: str | None = None) -> Any:
         if isinstance(characters, str):
             characters = "".join(dict.fromkeys(characters))
-            if len(characters) * len(text) > _MOST_COMPARED:
+            if len(characters) * len(text) > _MAX_COMPARISONS:
                 raise RefusalError(phrase("the strings are too long for '{name}'", name=name))
         return getattr(text, name)(characters)
 
@@ -110,19 +110,19 @@ def _bounded_strip(name: str) -> Callable[..., Any]:
 
 
 def check_codec(value: Any, encoding: str) -> None:
-    """Check that a value is not too long for a codec of quadratic running time.
+    """Raise if a value is too long for a codec of quadratic running time.
 
     Raises:
         RefusalError: if the value is too long for the codec.
-        LookupError: if there is no such codec. Non-ASCII names are included, because Python 3.15 warns about them.
+        LookupError: if there is no such codec, or if its name is not ASCII, because Python 3.15 warns about such names.
     """
     if isinstance(encoding, str) and not encoding.isascii():
         raise LookupError(f"unknown encoding: {encoding}")
     name = codecs.lookup(encoding).name
-    if name in _QUICK_CODECS or not isinstance(value, (str, bytes)):
+    if name in _FAST_CODECS or not isinstance(value, (str, bytes)):
         return
-    longest = max(map(len, value.split("."))) if name == "idna" and isinstance(value, str) else len(value)
-    if longest > _MOST_CODED:
+    longest_length = max(map(len, value.split("."))) if name == "idna" and isinstance(value, str) else len(value)
+    if longest_length > _MAX_CODEC_LENGTH:
         raise RefusalError(phrase("the string is too long for the encoding '{encoding}'", encoding=encoding))
 
 
@@ -135,21 +135,23 @@ def _bounded_codec(name: str) -> Callable[..., Any]:
 
 
 METHODS: dict[tuple[type, str], Callable[..., Any]] = {
-    **{(str, name): _backwards(name) for name in ("rfind", "rindex", "rpartition")},
+    **{(str, name): _bounded_search(name) for name in ("rfind", "rindex", "rpartition")},
     (str, "rsplit"): _rsplit,
     **{(str, name): _bounded_strip(name) for name in ("strip", "lstrip", "rstrip")},
     (str, "encode"): _bounded_codec("encode"),
     (bytes, "decode"): _bounded_codec("decode"),
 }
-"""Methods that are bounded: type and name -> the function to call instead."""
+"""The functions that replace slow methods, by type and method name."""
 
 
 def _bounded_function(name: str) -> Callable[..., Any]:
     function = getattr(math, name)
 
     def guarded(*numbers: Any) -> Any:
-        if len(numbers) > _MOST_NUMBERS:
-            raise RefusalError(phrase("'{name}' of more than {count:,} numbers", name=name, count=_MOST_NUMBERS))
+        if len(numbers) > _MAX_NUMBERS:
+            raise RefusalError(
+                phrase(("'{name}' cannot take more than {count:,} numbers"), name=name, count=_MAX_NUMBERS)
+            )
         return function(*numbers)
 
     return guarded
@@ -157,20 +159,22 @@ def _bounded_function(name: str) -> Callable[..., Any]:
 
 def _sumprod(left: Iterable[Any], right: Iterable[Any]) -> Any:
     pairs = list(zip(left, right, strict=True))
-    if len(pairs) > _MOST_NUMBERS and not all(isinstance(number, float) for pair in pairs for number in pair):
-        raise RefusalError(phrase("'{name}' of more than {count:,} numbers", name="sumprod", count=_MOST_NUMBERS))
-    return sum(one * other for one, other in pairs)
+    if len(pairs) > _MAX_NUMBERS and not all(isinstance(number, float) for pair in pairs for number in pair):
+        raise RefusalError(
+            phrase(("'{name}' cannot take more than {count:,} numbers"), name="sumprod", count=_MAX_NUMBERS)
+        )
+    return sum(left_number * right_number for left_number, right_number in pairs)
 
 
 MATHEMATICS: dict[str, Any] = {
     "gcd": _bounded_function("gcd"),
     **({"sumprod": _sumprod} if hasattr(math, "sumprod") else {}),
 }
-"""Functions of ``math`` that are bounded."""
+"""The functions that replace slow functions of ``math``, by name."""
 
 # These patterns are not compiled here because few files need them.
-_CLASS_BEGINS = r"\[\^?\]?"
-_WRITTEN = r"(?s)\\.|\]"
+_CLASS_START = r"\[\^?\]?"
+_ESCAPE_OR_BRACKET = r"(?s)\\.|\]"
 
 
 def split(pattern: str, text: str) -> list[str]:
@@ -185,16 +189,16 @@ def split(pattern: str, text: str) -> list[str]:
         re.error: if the pattern is not a valid regular expression.
         RefusalError: if the split takes too long.
     """
-    begins = re.match(_CLASS_BEGINS, pattern)
-    written = re.compile(_WRITTEN).finditer(pattern, begins.end() if begins else 0)
-    ends = next((match.end() for match in written if match[0] == "]"), 0)
-    if ends == len(pattern):
+    opening = re.match(_CLASS_START, pattern)
+    escapes_and_brackets = re.compile(_ESCAPE_OR_BRACKET).finditer(pattern, opening.end() if opening else 0)
+    class_end = next((match.end() for match in escapes_and_brackets if match[0] == "]"), 0)
+    if class_end == len(pattern):
         return re.split(pattern, text)
     import regex
 
     re.compile(pattern)  # raises the same error message as ros/xacro
     try:
-        return regex.split(pattern, text, timeout=_SECONDS)
+        return regex.split(pattern, text, timeout=_TIMEOUT_SECONDS)
     except regex.error as error:
         raise re.error(str(error)) from None
     except TimeoutError:

@@ -19,15 +19,15 @@ from linkwright.xacro.expressions.bounded import RefusalError
 from linkwright.xacro.expressions.sandbox import CALLABLE_TYPES, MAX_BITS, MAX_LENGTH, Module
 from linkwright.xacro.faults import Fault
 
-_BARE = ("list", "dict", "map", "len", "str", "float", "int", "bool", "min", "max", "round")
-_PYTHON = (
-    *_BARE,
+_BARE_NAMES = ("list", "dict", "map", "len", "str", "float", "int", "bool", "min", "max", "round")
+_PYTHON_FUNCTIONS = (
+    *_BARE_NAMES,
     *("abs", "all", "any", "complex", "divmod", "enumerate", "filter", "frozenset", "hash", "isinstance"),
     *("issubclass", "ord", "range", "repr", "reversed", "set", "slice", "sorted", "sum", "tuple", "type"),
     *("vars", "zip"),
 )
-_LARGEST_FACTORIAL = 2_000
-_MOST_LISTS = 1_000
+_MAX_FACTORIAL = 2_000
+_MAX_LISTS = 1_000
 
 
 def _range(*arguments: Any) -> range:
@@ -43,7 +43,7 @@ def _range(*arguments: Any) -> range:
 
 def _round(number: Any, digits: int | None = None) -> Any:
     if isinstance(number, int) and digits is not None and abs(digits) > MAX_BITS:
-        raise RefusalError(phrase("it rounds to too many digits"))
+        raise RefusalError(phrase("the number of digits for 'round' is too large"))
     return round(number, digits)
 
 
@@ -51,8 +51,8 @@ def _sum(items: Any, start: Any = 0) -> Any:
     summands = list(items)
     if isinstance(start, (int, float, complex)):
         return sum(summands, start)
-    if len(summands) > _MOST_LISTS:
-        raise RefusalError(phrase("it adds more than {most_lists:,} lists", most_lists=_MOST_LISTS))
+    if len(summands) > _MAX_LISTS:
+        raise RefusalError(phrase("'sum' cannot add more than {most_lists:,} lists", most_lists=_MAX_LISTS))
     total = start
     for summand in summands:
         total = sandbox.add(total, summand)
@@ -72,24 +72,30 @@ def _vars(value: Any) -> dict[str, Any]:
     return dict(value.values)
 
 
-_GUARDED: dict[str, Any] = {"range": _range, "round": _round, "sum": _sum, "type": _type, "vars": _vars}
+_GUARDED_FUNCTIONS: dict[str, Any] = {"range": _range, "round": _round, "sum": _sum, "type": _type, "vars": _vars}
 
 
 def _factorial(n: Any) -> int:
-    if isinstance(n, int) and n > _LARGEST_FACTORIAL:
+    if isinstance(n, int) and n > _MAX_FACTORIAL:
         raise RefusalError(
-            phrase("the factorial of more than {largest_factorial:,}", largest_factorial=_LARGEST_FACTORIAL)
+            phrase(
+                ("the argument of 'factorial' is larger than {largest_factorial:,}"), largest_factorial=_MAX_FACTORIAL
+            )
         )
     return math.factorial(n)
 
 
-def _of_two(name: str) -> Callable[..., int]:
+def _guarded_combinatorial(name: str) -> Callable[..., int]:
     function = getattr(math, name)
 
     def guarded(n: Any, *k: Any) -> int:
-        if isinstance(n, int) and n > _LARGEST_FACTORIAL:
+        if isinstance(n, int) and n > _MAX_FACTORIAL:
             raise RefusalError(
-                phrase("'{name}' of more than {largest_factorial:,}", name=name, largest_factorial=_LARGEST_FACTORIAL)
+                phrase(
+                    ("the first argument of '{name}' is larger than {largest_factorial:,}"),
+                    name=name,
+                    largest_factorial=_MAX_FACTORIAL,
+                )
             )
         result: int = function(n, *k)
         return result
@@ -114,22 +120,24 @@ def _lcm(*numbers: Any) -> int:
 MATHEMATICS: dict[str, Any] = {
     **{name: value for name, value in vars(math).items() if not name.startswith("_")},
     "factorial": _factorial,
-    "comb": _of_two("comb"),
+    "comb": _guarded_combinatorial("comb"),
     "lcm": _lcm,
-    "perm": _of_two("perm"),
+    "perm": _guarded_combinatorial("perm"),
     "prod": _prod,
     **bounded.MATHEMATICS,
 }
-"""Everything public in Python's ``math``."""
+"""The public names of Python's ``math``, with guarded versions of the functions that can be slow."""
 
-_PYTHON_NAMES: dict[str, Any] = {name: _GUARDED.get(name, getattr(builtins, name)) for name in _PYTHON}
+_PYTHON_NAMES: dict[str, Any] = {
+    name: _GUARDED_FUNCTIONS.get(name, getattr(builtins, name)) for name in _PYTHON_FUNCTIONS
+}
 
 
 def tokenize(text: str, sep: str = ",; ", skip_empty: bool = True) -> list[str]:
-    """Return the parts of a text between any of some separator characters."""
-    inside = re.sub(r"(?<!\\)([\[\]])", r"\\\1", sep)
+    """Return the parts of a text between separator characters; `sep` lists these characters."""
+    escaped_separators = re.sub(r"(?<!\\)([\[\]])", r"\\\1", sep)
     try:
-        parts = bounded.split(f"[{inside}]", text)
+        parts = bounded.split(f"[{escaped_separators}]", text)
     except re.error as error:
         raise ValueError(phrase("cannot split at '{sep}': {error}", sep=sep, error=error)) from None
     return [part for part in parts if part] if skip_empty else parts
@@ -193,7 +201,7 @@ def global_names(session: Provider) -> dict[str, Any]:
     for name in ("sorted", "range"):
         deprecated[name] = session.deprecated(f"python.{name}", _PYTHON_NAMES[name])
     return {
-        **{name: _PYTHON_NAMES[name] for name in _BARE},
+        **{name: _PYTHON_NAMES[name] for name in _BARE_NAMES},
         "True": True,
         "False": False,
         **MATHEMATICS,

@@ -24,7 +24,7 @@ from linkwright.graph.log.logger import Logger
 from linkwright.simulation.plugins.plugin import PluginPlace
 from linkwright.simulation.plugins.ros2_control.joints import SimulatedJoint
 from linkwright.simulation.plugins.ros2_control.pids import pids_of
-from linkwright.simulation.plugins.ros2_control.sensors import SimulatedSensor, sensors_of, simulated_sensor
+from linkwright.simulation.plugins.ros2_control.sensors import SimulatedSensor, create_sensor, sensors_of
 from linkwright.simulation.simulation import Simulation
 
 _KINDS = (POSITION, VELOCITY, EFFORT)
@@ -90,7 +90,7 @@ class SimulatedSystem(Hardware):
                     for command in self.commands
                     if command.component == each.name and command.kind in _KINDS and each.mimic is None
                 },
-                holds=holds,
+                holds_position=holds,
                 gain=gain,
                 pids={kind: Pid(each_gains) for (joint, kind), each_gains in gains.items() if joint == each.name},
             )
@@ -117,7 +117,7 @@ class SimulatedSystem(Hardware):
                 self.logger.warning(message)
                 continue
             states = [state for state in self.states if state.component == sensor.name]
-            found.append(simulated_sensor(plugin.simulation, placed, states, plugin.random_of(placed.name)))
+            found.append(create_sensor(plugin.simulation, placed, states, plugin.random_of(placed.name)))
         return found
 
     def begin(self) -> None:
