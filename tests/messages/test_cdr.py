@@ -137,19 +137,19 @@ class TestRefused:
         assert "the end of a string does not match its length" in self.refused(b"\0\1\0\0\2\0\0\0ab", String)
 
     def test_a_bool_that_is_none(self):
-        assert "a bool has the value 2" in self.refused(b"\0\1\0\0\2", get_message("std_msgs/msg/Bool"))
+        assert "a bool has the invalid value 2" in self.refused(b"\0\1\0\0\2", get_message("std_msgs/msg/Bool"))
         raw = serialize(get_message("test_msgs/msg/UnboundedSequences")(bool_values=[True, False]))
-        assert "a bool has the value 7" in self.refused(raw[:8] + b"\7" + raw[9:],
+        assert "a bool has the invalid value 7" in self.refused(raw[:8] + b"\7" + raw[9:],
                                                    get_message("test_msgs/msg/UnboundedSequences"))  # fmt: skip
 
     def test_more_than_a_bound_allows(self):
         cls = get_message("rcl_interfaces/msg/ParameterDescriptor")
         data = bytearray(serialize(cls()))
         data[-4:] = b"\2\0\0\0"
-        assert "'integer_range' is longer than its bound of 1" in self.refused(bytes(data), cls)
+        assert "'integer_range' is longer than its maximum length of 1" in self.refused(bytes(data), cls)
         cls = get_message("type_description_interfaces/msg/FieldType")
         text = b"\0\1\0\0" + bytes(24) + struct.pack("<I", 301) + b"a" * 300 + b"\0"
-        assert "'nested_type_name' is longer than its bound of 255" in self.refused(text, cls)
+        assert "'nested_type_name' is longer than its maximum length of 255" in self.refused(text, cls)
 
 
 def test_a_text_of_length_zero_is_empty():

@@ -300,7 +300,12 @@ class TestParameters:
             ),
             (
                 {"dependent_joints": {"a": {"parent": "b", "faktor": 2.0}}},
-                ["invalid dependent_joint name 'a.faktor': write JOINT.parent, JOINT.factor or JOINT.offset"],
+                [
+                    (
+                        "'a.faktor' is not a valid name of a dependent joint's write "
+                        "JOINT.parent, JOINT.factor or JOINT.offset"
+                    )
+                ],
             ),
         ],
     )

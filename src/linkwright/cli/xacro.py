@@ -172,11 +172,11 @@ def _expand_text(inputs: Inputs, verbosity: int, *, deps: bool) -> str:
 
 def _arguments_output(inputs: Inputs, verbosity: int, form: str) -> str:
     from linkwright.xacro.tracing.arguments import arguments_data, examine_arguments
-    from linkwright.xacro.tracing.arguments_text import arguments_text, incomplete
+    from linkwright.xacro.tracing.arguments_text import arguments_text, incompleteness_remarks
 
     examination = examine_arguments(inputs)
     if verbosity > _QUIET:
-        print_diagnostics([*incomplete(examination), *examination.unused], sys.stderr)
+        print_diagnostics([*incompleteness_remarks(examination), *examination.unused], sys.stderr)
     if form == "json":
         return _json_text({"arguments": arguments_data(examination.arguments)})
     return arguments_text(examination.arguments)

@@ -121,7 +121,7 @@ def _find_factory(package: str, executable: str) -> Factory:
         raise LinkwrightError(
             Diagnostic(
                 "NODE001",
-                phrase("package '{package}' has no node that comes with Linkwright", package=package),
+                phrase("Linkwright provides no nodes of the package '{package}'", package=package),
                 hint=hint,
             )
         )

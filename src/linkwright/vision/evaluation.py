@@ -287,7 +287,7 @@ def _confusion_matrix(
         ignored_objects = objects.where(objects.ignored)
         objects = objects.where(~objects.ignored)
         overlaps = intersection_over_union(certain.boxes, objects.boxes)
-        # Match objects of the same class first: a correct detection that overlaps another object, too, is no mistake.
+        # Match objects of the same class first: a correct detection that overlaps another object, too, is right.
         same_class_overlaps = overlaps * (certain.classes[:, None] == objects.classes[None])
         matches = _match_objects(same_class_overlaps, _CONFUSION_OVERLAP)
         remaining_overlaps = overlaps.copy()

@@ -99,7 +99,9 @@ def _raise_if_binary(data: bytes, name: str) -> None:
         hint = phrase("save the file as UTF-8")
     elif not beginning.lstrip().startswith(b"<"):
         message = phrase("'{name}' is not a text file", name=name)
-        hint = phrase("it contains zero bytes, as images, archives and programs do; check that it is the intended file")
+        hint = phrase(
+            "it contains zero bytes, as image, an archive or a programs do; check that it is the intended file"
+        )
     else:
         return
     source = SourceText(name, "")
@@ -110,7 +112,9 @@ def _decode(data: bytes, encoding: str, name: str, reason: Phrase) -> Decoded:
     try:
         return Decoded(data.decode(encoding), encoding)
     except LookupError:
-        message = phrase("'{name}' declares the unknown encoding '{encoding}'", name=name, encoding=encoding)
+        message = phrase(
+            ("'{name}' declares the encoding '{encoding}', which is not supported"), name=name, encoding=encoding
+        )
         raise LinkwrightError(Diagnostic("XML104", message, hint=phrase("save the file as UTF-8"))) from None
     except UnicodeDecodeError as error:
         valid_text = data[: error.start].decode(encoding, "replace")

@@ -128,10 +128,10 @@ class _Fault:
             return self._diagnostic(
                 "XML207",
                 phrase("there is content after the end of the root element"),
-                hint=phrase("a file has one root element"),
+                hint=phrase("an XML file has exactly one root element"),
             )
         if code == _MISPLACED_DECLARATION:
-            message = phrase("the XML declaration '<?xml' must be the very first thing in the file")
+            message = phrase("the XML declaration '<?xml' must be at the very start of the file")
             return self._diagnostic("XML206", message, 5, hint=phrase("remove everything before it"))
         if code == _NO_ELEMENT:
             return self._diagnostic(

@@ -266,7 +266,7 @@ async def test_what_is_not_had_is_left_out_with_a_line(scene, start, log):
     [
         ({"resolution": 0.0}, "parameter 'resolution' of 'global_costmap' cannot be '0.0'"),
         ({"footprint": "[[1, 2]]"}, "'[[1, 2]]' has 1"),
-        ({"plugins": ["mine"]}, "parameter 'mine.plugin' of 'global_costmap' is not set"),
+        ({"plugins": ["mine"]}, "parameter 'mine.plugin' of 'global_costmap' has no set"),
         ({"obstacle_layer.scan.data_type": "Image"}, "choose from LaserScan, PointCloud2"),
     ],
 )

@@ -202,7 +202,7 @@ def test_copies_have_free_names_and_stand_beside():
 
 def test_what_is_deleted_is_gone_with_its_lines_and_nothing_else():
     assert delete(world_text(PLAIN), ["box"]).text == PLAIN.replace(BOX, "")
-    with pytest.raises(EditError, match="there is no 'crate' in the world's file"):
+    with pytest.raises(EditError, match="there is no model or light 'crate' in the world's file"):
         delete(world_text(PLAIN), ["crate"])
 
 

@@ -114,7 +114,7 @@ class MisplacedElement(Rule):
             yield self.report(
                 phrase("<{tag}> in {place} is not read", tag=child.tag, place=location_phrase(schema_element)),
                 child,
-                hint=phrase("it belongs directly in {listed}", listed=parents_text),
+                hint=phrase("put it directly in {listed}", listed=parents_text),
             )
 
 

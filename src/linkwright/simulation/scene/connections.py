@@ -13,7 +13,7 @@ from linkwright.geometry.single import IDENTITY, Transform
 from linkwright.sdf.frames import FrameError, Frames
 from linkwright.sdf.poses import SEPARATOR, WORLD
 from linkwright.sdf.worlds import World
-from linkwright.simulation.scene.structure import HeldLink, PlacedJoint, Structure, is_below, placed_joint, structure_of
+from linkwright.simulation.scene.structure import PlacedJoint, Structure, TreeLink, is_below, placed_joint, structure_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +50,7 @@ class Connections:
             for joint in own_joints
             if self.hanging.get(joint.child) is joint and model_of(joint.child) == name
         }
-        links = tuple(HeldLink(held.link, attaching_joints.get(held.link.name, held.joint)) for held in structure.links)
+        links = tuple(TreeLink(held.link, attaching_joints.get(held.link.name, held.joint)) for held in structure.links)
         loops = tuple(joint for joint in own_joints if attaching_joints.get(joint.child) is not joint)
         hangs_on = frozenset(model for joint in own_joints for model in _models(joint)) - {WORLD, name}
         return Connected(replace(structure, links=links), loops, hangs_on)
@@ -106,7 +106,7 @@ def connections_of(world: World) -> Connections:
     placed = _placed_joints(world, frames)
     models = {model for joint in placed for model in _models(joint)}
     poses: dict[str, Transform] = {}
-    held_links: dict[str, HeldLink] = {}
+    held_links: dict[str, TreeLink] = {}
     for model in world.models:
         if model.name in models - poses.keys():
             try:

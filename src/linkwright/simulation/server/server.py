@@ -191,8 +191,8 @@ class SimulationServer:
         new_world = with_saved_state(world)
         changes = changes_to(new_world, simulation.scene.models, self._world_models)
         if surroundings(old_world) != surroundings(new_world):
-            changes = changes.with_all(simulation.scene.models, self._namespaces)
-        changes = changes.with_connected(simulation.scene.models, self._namespaces)
+            changes = changes.with_all_replaced(simulation.scene.models, self._namespaces)
+        changes = changes.with_connected_replaced(simulation.scene.models, self._namespaces)
         allow(check(new_world, simulation, (*changes.renewed, *changes.new), finder))
         renewed = tuple(replace(change, motion=motion_of(simulation, change.name)) for change in changes.renewed)
         simulation.set_world(world, finder)

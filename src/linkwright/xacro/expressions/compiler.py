@@ -18,7 +18,7 @@ from linkwright.xacro.expressions import sandbox
 from linkwright.xacro.expressions.bounded import RefusalError, checked_keys
 from linkwright.xacro.expressions.functions import Function, bind_parameters, call, charge_value, cost
 from linkwright.xacro.expressions.scope import Environment
-from linkwright.xacro.expressions.yamldata import COPIED, YamlDict, YamlMapping, wrapped
+from linkwright.xacro.expressions.yamldata import COPIED_TYPES, YamlDict, YamlMapping, wrapped
 from linkwright.xacro.faults import Fault
 
 Closure = Callable[[Any], Any]
@@ -346,7 +346,7 @@ class Compiler:
                 raise Fault("XAC205", foreign(error), start_of_name, end, hint) from None
             except FAILURES as error:
                 raise self._failure(error, start, end) from None
-            if result.__class__ in COPIED and (steps := cost(result)):
+            if result.__class__ in COPIED_TYPES and (steps := cost(result)):
                 env.session.budget.charge_steps(steps)
             return result
 
@@ -370,7 +370,7 @@ class Compiler:
                 raise Fault("XAC205", message, start, end, hint) from None
             except FAILURES as error:
                 raise self._failure(error, start, end) from None
-            if (index.__class__ is slice or result.__class__ in COPIED) and (steps := cost(result)):
+            if (index.__class__ is slice or result.__class__ in COPIED_TYPES) and (steps := cost(result)):
                 env.session.budget.charge_steps(steps)
             return result
 
@@ -516,7 +516,7 @@ class Compiler:
         def run(env: Environment, depth: int) -> Iterator[Environment]:
             bind, items, conditions = loops[depth]
             for item in items(env):
-                env.session.budget.charge_steps(2 + cost(item) if item.__class__ in COPIED else 2)
+                env.session.budget.charge_steps(2 + cost(item) if item.__class__ in COPIED_TYPES else 2)
                 bind(env, item)
                 if all(condition(env) for condition in conditions):
                     if depth + 1 < len(loops):

@@ -24,7 +24,7 @@ from linkwright.graph.log.logger import Logger
 from linkwright.simulation.plugins.plugin import PluginPlace
 from linkwright.simulation.plugins.ros2_control.joints import SimulatedJoint
 from linkwright.simulation.plugins.ros2_control.pids import pids_of
-from linkwright.simulation.plugins.ros2_control.sensors import SimulatedSensor, sensors_of, simulated_sensor
+from linkwright.simulation.plugins.ros2_control.sensors import SimulatedSensor, create_sensor, sensors_of
 from linkwright.simulation.simulation import Simulation
 
 _COMMAND_KINDS = (POSITION, VELOCITY, EFFORT)
@@ -94,7 +94,7 @@ class SimulatedSystem(Hardware):
                     and command.kind in _COMMAND_KINDS
                     and joint_description.mimic is None
                 },
-                holds=holds,
+                holds_position=holds,
                 gain=gain,
                 pids={
                     kind: Pid(each_gains)
@@ -126,7 +126,7 @@ class SimulatedSystem(Hardware):
                 continue
             states = [state for state in self.states if state.component == sensor.name]
             simulated_sensors.append(
-                simulated_sensor(plugin.simulation, placed_sensor, states, plugin.random_of(placed_sensor.name))
+                create_sensor(plugin.simulation, placed_sensor, states, plugin.random_of(placed_sensor.name))
             )
         return simulated_sensors
 
