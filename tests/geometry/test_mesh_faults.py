@@ -166,7 +166,7 @@ def test_a_broken_file_is_refused_in_its_own_words(name: str, tmp_path: Path) ->
     with pytest.raises(BadMeshError) as exported:
         read_parts(path, resolver=file_resolver(str(path)))
     assert expected in read.value.diagnostics[0].message
-    assert str(exported.value.why) in read.value.diagnostics[0].message
+    assert str(exported.value.reason) in read.value.diagnostics[0].message
 
 
 @pytest.mark.parametrize(

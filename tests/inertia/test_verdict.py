@@ -59,7 +59,7 @@ def inertial(mass=4.0, moment=0.016, origin="0 0 0"):
 )
 def test_a_ball(tmp_path, block, standing, words):
     verdict = verdict_on(tmp_path, block)
-    assert (verdict.standing, verdict.words) == (standing, words)
+    assert (verdict.standing, verdict.reason) == (standing, words)
 
 
 def test_the_worst_is_said_and_sorts_first(tmp_path):
@@ -75,7 +75,7 @@ def test_a_mass_of_next_to_nothing_in_a_large_shape_has_a_density_of_zero(tmp_pa
     large = BALL.replace("0.1", "1e5")
     verdict = verdict_on(tmp_path, inertial(mass=1e-320, moment=1.0), large)
     assert (verdict.standing, verdict.density) == (Standing.DOUBTFUL, 0.0)
-    assert verdict.words.startswith("it is lighter than air")
+    assert verdict.reason.startswith("it is lighter than air")
 
 
 def test_a_part_of_the_shapes_tells_nothing(tmp_path):
@@ -97,4 +97,4 @@ def test_a_mass_may_be_that_of_a_neighbour_without_one(tmp_path):
 def test_a_link_without_an_inertial_that_needs_none(tmp_path):
     joint = '<joint name="f" type="fixed"><parent link="a"/><child link="b"/></joint><link name="b">{}</link>'
     verdict = verdict_on(tmp_path, "", more=joint.format(inertial()))
-    assert verdict.words == "it is fixed to 'b', which has a mass"
+    assert verdict.reason == "it is fixed to 'b', which has a mass"

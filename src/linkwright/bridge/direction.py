@@ -40,7 +40,7 @@ class EarlyMessage(NamedTuple):
         data: the message as CDR.
     """
 
-    until: float
+    expires_at: float
     tap: Tap
     gid: bytes
     data: bytes
@@ -230,7 +230,7 @@ class Direction:
 
     def _is_expected(self, publisher: EndpointInfo) -> bool:
         """Return whether a subscription in the target can receive from the mirror of a publisher."""
-        subscriptions = self._target.seen.demanded.get(publisher.name, ())
+        subscriptions = self._target.seen.subscriptions.get(publisher.name, ())
         return any(can_receive(endpoint, publisher, keyed=self._target.needs_hashes) for endpoint in subscriptions)
 
     def _can_carry(self, info: EndpointInfo) -> bool:
@@ -254,7 +254,7 @@ class Direction:
         joiners would receive the history twice. While a topic has no publisher, and while its first publisher
         is being matched, every possible stream is subscribed to.
         """
-        subscriptions = self._target.seen.demanded
+        subscriptions = self._target.seen.subscriptions
         streams = {
             publisher.stream
             for publisher in self._publishers.values()
@@ -294,7 +294,7 @@ class Direction:
             if message.tap is not self._taps.get(message.tap.stream):
                 continue  # another bridge now carries the stream
             publisher = self._publisher(message.gid)
-            if publisher is None and now < message.until:
+            if publisher is None and now < message.expires_at:
                 self._early_messages.append(message)
                 continue
             publisher = publisher or self._any_publisher_for(message)

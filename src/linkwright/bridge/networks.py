@@ -32,8 +32,8 @@ class _NetworkKind:
     """
 
     label: str
-    why_not: Callable[[], Phrase]
-    open: Callable[[int | None, str, Logger], BackgroundTransport]
+    unavailable_reason: Callable[[], Phrase]
+    open_transport: Callable[[int | None, str, Logger], BackgroundTransport]
     needs_hashes: bool
 
 
@@ -77,12 +77,12 @@ class Network:
                 be joined.
         """
         kind = _KINDS[self.kind]
-        reason = kind.why_not()
+        reason = kind.unavailable_reason()
         if reason:
             message = phrase("{network} cannot be joined", network=self.label)
             raise LinkwrightError(Diagnostic("CLI454", message, notes=(Note(reason),)))
         graph = Graph(on_log=log, on_namesakes=_ignore_names)
-        transport = kind.open(self.domain_id, bridge_id, graph.get_logger(self.kind))
+        transport = kind.open_transport(self.domain_id, bridge_id, graph.get_logger(self.kind))
         graph.attach(transport)
         side = Side(self.label, graph, transport, bridge_id, needs_hashes=kind.needs_hashes)
         try:

@@ -38,7 +38,7 @@ class Snapshot:
 
     nodes: list[NodeIdentity] = field(default_factory=list)
     endpoints: list[EndpointInfo] = field(default_factory=list)
-    demanded: dict[str, list[EndpointInfo]] = field(default_factory=dict)
+    subscriptions: dict[str, list[EndpointInfo]] = field(default_factory=dict)
     served: set[str] = field(default_factory=set)
     carried: set[Provision] = field(default_factory=set)
     carried_nodes: set[str] = field(default_factory=set)
@@ -116,7 +116,7 @@ class Side:
                 continue
             snapshot.endpoints.append(endpoint)
             if endpoint.kind is EndpointKind.SUBSCRIPTION:
-                snapshot.demanded.setdefault(endpoint.name, []).append(endpoint)
+                snapshot.subscriptions.setdefault(endpoint.name, []).append(endpoint)
             elif endpoint.kind is EndpointKind.SERVICE:
                 snapshot.served.add(endpoint.name)
         self.seen = snapshot

@@ -98,7 +98,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.format == "json":
         sys.stdout.write(as_json(robot, estimates, result))
     else:
-        detailed_links = link_names if arguments.link and result is None else () if result is None else result.refused
+        detailed_links = link_names if arguments.link and result is None else () if result is None else result.refusals
         sys.stdout.write(as_text(robot, estimates, result, detailed_links))
         if not (arguments.link or arguments.write):
             print_message(
@@ -107,8 +107,8 @@ def run(arguments: argparse.Namespace) -> int:
                 )
             )
     if result is not None:
-        print_diagnostics(_refusal_findings(result.refused, robot), sys.stderr)
-    return 1 if has_errors(reading.diagnostics) or (result is not None and result.refused) else 0
+        print_diagnostics(_refusal_findings(result.refusals, robot), sys.stderr)
+    return 1 if has_errors(reading.diagnostics) or (result is not None and result.refusals) else 0
 
 
 def _parse_positive(text: str) -> float:

@@ -27,9 +27,9 @@ class Kind:
         hint: the hint of the error if no existing name is similar.
     """
 
-    found: Callable[[Session], NamesAndTypes]
+    find_names: Callable[[Session], NamesAndTypes]
     code: str
-    missing: Callable[[str], Phrase]
+    missing_message: Callable[[str], Phrase]
     hint: Phrase
 
     def types_of(self, session: Session, requested_name: str, *, hidden: bool = True) -> list[str]:
@@ -40,9 +40,9 @@ class Kind:
             InvalidNameError: the name is not valid.
         """
         name = absolute(requested_name)
-        found = dict(visible(self.found(session), hidden=hidden))
+        found = dict(visible(self.find_names(session), hidden=hidden))
         if name not in found:
-            raise unknown_name_error(self.code, self.missing(requested_name), name, found, self.hint)
+            raise unknown_name_error(self.code, self.missing_message(requested_name), name, found, self.hint)
         return found[name]
 
     def print_types(self, arguments: argparse.Namespace, requested_name: str, *, hidden: bool = True) -> int:
@@ -59,7 +59,7 @@ class Kind:
         """Print the names that have the type `type_name`, and return the exit status."""
 
         async def job(session: Session) -> int:
-            found = visible(self.found(session), hidden=hidden)
+            found = visible(self.find_names(session), hidden=hidden)
             print_names([name for name, types in found if type_name in types], arguments)
             return 0
 

@@ -37,7 +37,7 @@ class Greetings:
         received: the number of multicast packets received, by the name of the sending computer.
     """
 
-    own: str
+    own_host: str
     published: int = 0
     sent: int = 0
     subscribed: Counter[str] = field(default_factory=Counter)
@@ -53,7 +53,7 @@ class Greetings:
 
     def _count(self, counts: Counter[str], text: str) -> None:
         host = host_of(text)
-        if host and host != self.own:
+        if host and host != self.own_host:
             counts[host] += 1
 
     def take_table(self, topic: str, period: float) -> str:

@@ -23,11 +23,11 @@ def read_triangles(data: bytes, max_triangles: int) -> _Mesh | None:
     Returns None if there are more than `max_triangles` triangles, and in the cases described at `read_scene`.
     """
     file: ColladaFile[_Mesh, _Rows] | None = read_scene(data, Lists())
-    if file is None or sum(len(faces) for (_, faces), _ in file.placed) > max_triangles:
+    if file is None or sum(len(faces) for (_, faces), _ in file.placed_meshes) > max_triangles:
         return None
     corners: list[Vector3] = []
     triangles: list[_Triangle] = []
-    for (points, faces), ((a, b, c, u), (d, e, f, v), (g, h, i, w), _) in file.placed:
+    for (points, faces), ((a, b, c, u), (d, e, f, v), (g, h, i, w), _) in file.placed_meshes:
         is_mirrored = a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g) < 0
         first_index, unit = len(corners), file.unit
         corners += [

@@ -88,7 +88,7 @@ class ColladaFile(Generic[MeshT, MatrixT]):
 
     def __init__(self, unit: float, placed_meshes: list[tuple[MeshT, MatrixT]]) -> None:
         self.unit = unit
-        self.placed = placed_meshes
+        self.placed_meshes = placed_meshes
 
 
 def read_scene(data: bytes, numbers: Numbers[MeshT, MatrixT, Any]) -> ColladaFile[MeshT, MatrixT] | None:

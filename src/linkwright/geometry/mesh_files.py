@@ -65,7 +65,7 @@ class BadMeshError(Exception):
 
     def __init__(self, reason: Phrase) -> None:
         super().__init__(reason)
-        self.why = reason
+        self.reason = reason
 
 
 def placed_meshes(data: bytes, kind: str, *, is_plain: bool = False, **options: Any) -> list[PlacedMesh]:
@@ -140,7 +140,7 @@ def _read_plain(data: bytes, kind: str) -> list[PlacedMesh] | None:
         return (
             None
             if file is None
-            else [PlacedMesh(plain_mesh, matrix, file.unit, no_names) for plain_mesh, matrix in file.placed]
+            else [PlacedMesh(plain_mesh, matrix, file.unit, no_names) for plain_mesh, matrix in file.placed_meshes]
         )
     mesh = read_stl(data, is_plain=True) if kind == "stl" else read_obj(data) if kind == "obj" else None
     return None if mesh is None else [PlacedMesh(mesh, np.eye(4), 1.0, no_names)]

@@ -69,7 +69,7 @@ class MeshPart:
     """
 
     triangles: Triangles
-    own: FileMaterial | None
+    file_material: FileMaterial | None
     names: frozenset[str] = frozenset()
 
     def moved(self, offset: Array) -> MeshPart:

@@ -141,7 +141,7 @@ def read_mesh(path: Path) -> TriangleMesh:
     except ModuleNotFoundError as error:
         raise missing_extra("INR104", error) from None
     except BadMeshError as error:
-        raise unreadable(path, error.why) from None
+        raise unreadable(path, error.reason) from None
     if not np.abs(mesh.vertices).max() <= FARTHEST:
         raise unreadable(path, phrase("a coordinate is out of range"))
     return mesh

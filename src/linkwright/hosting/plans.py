@@ -112,7 +112,7 @@ class HostedPlan:
             remappings=self.remappings,
             arguments=self.arguments,
             library=library,
-            for_others=self.for_others or ParameterRules(),
+            parameters_of_others=self.for_others or ParameterRules(),
             environment=self.environment,
         )
 

@@ -79,7 +79,7 @@ def _table(rows: list[tuple[str, ...]]) -> Iterator[str]:
 
 
 def _row(estimate: Estimate, verdict: Verdict) -> tuple[str, ...]:
-    file_properties = verdict.present
+    file_properties = verdict.file_properties
     mass = "-" if file_properties is None else f"{file_properties.mass:.4g}"
     if estimate.properties is not None and estimate.basis != "present":
         mass = localized(phrase("{present} ({mass:.4g} computed)", present=mass, mass=estimate.properties.mass))
@@ -88,7 +88,7 @@ def _row(estimate: Estimate, verdict: Verdict) -> tuple[str, ...]:
     )
     density = "-" if verdict.density is None else grouped_digits(verdict.density)
     name = _STANDING_NAMES.get(verdict.standing)
-    text = verdict.words if name is None else phrase("{standing}: {words}", standing=name, words=verdict.words)
+    text = verdict.reason if name is None else phrase("{standing}: {words}", standing=name, words=verdict.reason)
     return estimate.link, mass, density, moments, localized(text)
 
 
@@ -143,10 +143,10 @@ def _link_data(estimate: Estimate, verdict: Verdict, write_result: Written | Non
     if estimate.properties is not None:
         data |= _properties_data(estimate.properties)
     data["present"] = None if verdict.comparison is None else asdict(verdict.comparison)
-    data |= {"verdict": verdict.standing.value, "why": str.__str__(verdict.words), "present_density": verdict.density}
+    data |= {"verdict": verdict.standing.value, "why": str.__str__(verdict.reason), "present_density": verdict.density}
     if write_result is not None:
         data["written"] = estimate.link in write_result.links
-        data["refused"] = write_result.refused.get(estimate.link)
+        data["refused"] = write_result.refusals.get(estimate.link)
     return data
 
 

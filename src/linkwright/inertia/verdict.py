@@ -54,9 +54,9 @@ class Verdict:
     """
 
     standing: Standing
-    words: Phrase
+    reason: Phrase
     badness: float = 0.0
-    present: MassProperties | None = None
+    file_properties: MassProperties | None = None
     density: float | None = None
     comparison: Comparison | None = None
 

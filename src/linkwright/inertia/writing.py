@@ -31,7 +31,7 @@ class Written:
 
     files: tuple[Path, ...]
     links: tuple[str, ...]
-    refused: Mapping[str, str]
+    refusals: Mapping[str, str]
 
 
 def write_inertials(robot: Robot, properties: Mapping[str, MassProperties]) -> Written:

@@ -57,7 +57,7 @@ def write_inference(robot: Robot, inference: Inference) -> Written:
     by_key = {str(key): findings for key, findings in findings_by_owner.items()}
     writer = _Writer(robot)
     written = write_edits({key: partial(writer.edits, findings) for key, findings in by_key.items()})
-    refused = tuple(_refusal(finding, why) for key, why in written.refused.items() for finding in by_key[key])
+    refused = tuple(_refusal(finding, why) for key, why in written.refusals.items() for finding in by_key[key])
     return Written(written.files, sum(len(by_key[key]) for key in written.links), refused)
 
 

@@ -55,15 +55,15 @@ class _Run:
         hanging: the subset of `errors` that may be due to arguments whose values only the caller knows.
     """
 
-    given: ArgumentSet
-    checked: Checked
+    argument_set: ArgumentSet
+    result: Checked
     errors: frozenset[Key]
     hanging: frozenset[Key] = frozenset()
 
     @property
     def error_messages(self) -> frozenset[tuple[Key, str]]:
         """The key and the message of each error."""
-        keyed_messages = ((_place(diagnostic), str(diagnostic.message)) for diagnostic in self.checked.diagnostics)
+        keyed_messages = ((_place(diagnostic), str(diagnostic.message)) for diagnostic in self.result.diagnostics)
         return frozenset(pair for pair in keyed_messages if pair[0] in self.errors)
 
     def is_fine(self, common: frozenset[Key]) -> bool:
@@ -102,13 +102,13 @@ class SetCheck:
         `find_sets` returns the callers' sets and is called only if they are needed.
         """
         default = self._run(_NO_VALUES)
-        if _has_expressions(default.checked):
+        if _has_expressions(default.result):
             default = self._run_expanded(find_sets()) or default
-        if (self.is_named and not default.errors) or not _takes_arguments(default.checked):
-            return default.checked
+        if (self.is_named and not default.errors) or not _takes_arguments(default.result):
+            return default.result
         sets = find_sets()
-        if self.is_named and not any(argument_set.values or argument_set.open for argument_set in sets):
-            return default.checked
+        if self.is_named and not any(argument_set.values or argument_set.runtime_names for argument_set in sets):
+            return default.result
         complete_runs = [
             self._run(argument_set) for argument_set in sets if argument_set.is_complete and argument_set.values
         ]
@@ -117,7 +117,7 @@ class SetCheck:
         common = frozenset.intersection(*(run.errors for run in (default, *complete_runs)))
         other_runs: list[_Run] = []
         if not complete_runs or not all(run.is_fine(common) for run in complete_runs):
-            compared_sets = compared_values(_sources(default.checked))[:_MAX_TRIED_VALUES] if is_unknown else ()
+            compared_sets = compared_values(_sources(default.result))[:_MAX_TRIED_VALUES] if is_unknown else ()
             other_runs = [
                 self._run(argument_set)
                 for argument_set in (*sets, *compared_sets)
@@ -129,7 +129,7 @@ class SetCheck:
         if default.is_fine(common) or uses_defaults:
             usable_runs.insert(0, default)
         usable_runs = usable_runs or [run for run in other_runs if run.is_fine(common)]
-        if not usable_runs and any(argument_set.open for argument_set in sets):
+        if not usable_runs and any(argument_set.runtime_names for argument_set in sets):
             return self._result_for_unknown_values(default, [default, *all_runs], common, sets)
         if is_unknown and usable_runs in ([], [default]):
             return self._result_without_values(default, sets)
@@ -166,9 +166,9 @@ class SetCheck:
             if diagnostic.severity is Severity.ERROR and find_rule(diagnostic.code) is None
         )
         run = _Run(argument_set, result, errors)
-        if not (errors and argument_set.open):
+        if not (errors and argument_set.runtime_names):
             return run
-        assumed_values = dict.fromkeys(filter(None, argument_set.open), _ANY_VALUE)
+        assumed_values = dict.fromkeys(filter(None, argument_set.runtime_names), _ANY_VALUE)
         changed_errors = self._changed_errors(run, assumed_values) if assumed_values else frozenset()
         return replace(run, hanging=changed_errors | {key for key in errors if _may_depend_on_argument(key[0])})
 
@@ -181,11 +181,11 @@ class SetCheck:
         """
         occurrences: dict[Key, tuple[Diagnostic, list[_Run]]] = {}
         for run in runs:
-            for key, finding in _with_numbered_keys(run.checked.diagnostics):
+            for key, finding in _with_numbered_keys(run.result.diagnostics):
                 occurrences.setdefault(key, (finding, []))[1].append(run)
         diagnostics: list[Diagnostic] = [*with_configured_severity(extra, self.settings)]
         placeholder_names = {
-            name for run in runs if run.checked.subject for name in run.checked.subject.once(placeholder_links)
+            name for run in runs if run.result.subject for name in run.result.subject.once(placeholder_links)
         }
         for diagnostic, affected_runs in occurrences.values():
             if (
@@ -197,24 +197,26 @@ class SetCheck:
                 diagnostics.append(diagnostic)
             elif not _holds_for_all_sets(diagnostic):
                 diagnostics.append(_add_condition(diagnostic, affected_runs, runs))
-        best_result = next((run.checked for run in runs if run.checked.robot is not None), runs[0].checked)
+        best_result = next((run.result for run in runs if run.result.robot is not None), runs[0].result)
         return replace(best_result, diagnostics=tuple(sorted_by_location(diagnostics, str(self.path))))
 
     def _needs_arguments_finding(
         self, working_run: _Run, default: _Run, common: frozenset[Key], sets: Sequence[ArgumentSet]
     ) -> Iterator[Diagnostic]:
         """Yield the finding that the defaults alone do not produce a robot."""
-        names = self._required_arguments(working_run.given.values, common)
-        shown_values = " ".join(f"{name}:={working_run.given.values[name]}" for name in names[:_MAX_SHOWN_ARGUMENTS])
+        names = self._required_arguments(working_run.argument_set.values, common)
+        shown_values = " ".join(
+            f"{name}:={working_run.argument_set.values[name]}" for name in names[:_MAX_SHOWN_ARGUMENTS]
+        )
         message = (
             phrase("for instance, it gets {values} here", values=shown_values)
-            if working_run.given in sets
+            if working_run.argument_set in sets
             else phrase("for instance, it can be expanded with {values}", values=shown_values)
         )
-        notes = [Note(message, working_run.given.span)]
-        if len(sets) > 1 and working_run.given in sets:
+        notes = [Note(message, working_run.argument_set.span)]
+        if len(sets) > 1 and working_run.argument_set in sets:
             notes.append(Note(phrase("the file is checked with {count} sets of values", count=len(sets))))
-        yield _missing_arguments_finding(default.checked, names, tuple(notes))
+        yield _missing_arguments_finding(default.result, names, tuple(notes))
 
     def _required_arguments(self, values: Mapping[str, str], common: frozenset[Key]) -> list[str]:
         """Return the names of the arguments without which the expansion fails.
@@ -261,7 +263,7 @@ class SetCheck:
         arguments are left out.
         """
         undeclared_names = [
-            name for diagnostic in default.checked.diagnostics if (name := undeclared_argument(diagnostic))
+            name for diagnostic in default.result.diagnostics if (name := undeclared_argument(diagnostic))
         ]
         if undeclared_names:
             uncertain_errors = self._changed_errors(default, dict.fromkeys(undeclared_names, _ANY_VALUE))
@@ -271,14 +273,14 @@ class SetCheck:
                 list(dict.fromkeys(undeclared_names)),
                 _runtime_value_note(sets),
             )
-        names = dict.fromkeys((*_runtime_arguments(sets), *empty_defaults(_sources(default.checked))))
+        names = dict.fromkeys((*_runtime_arguments(sets), *empty_defaults(_sources(default.result))))
         changed_errors = {
             name: errors
             for name in list(names)[:_MAX_TRIED_VALUES]
             if (errors := self._changed_errors(default, {name: _ANY_VALUE}))
         }
         if not changed_errors:
-            return default.checked
+            return default.result
         uncertain_errors = frozenset[Key]().union(*changed_errors.values())
         return self._without_uncertain_errors(
             default,
@@ -289,7 +291,7 @@ class SetCheck:
 
     def _changed_errors(self, run: _Run, values: Mapping[str, str]) -> frozenset[Key]:
         """Return the keys of the errors that change or disappear with other values."""
-        other_messages = self._run(ArgumentSet({**run.given.values, **values})).error_messages
+        other_messages = self._run(ArgumentSet({**run.argument_set.values, **values})).error_messages
         return frozenset(key for key, message in run.error_messages if (key, message) not in other_messages)
 
     def _without_uncertain_errors(
@@ -297,7 +299,7 @@ class SetCheck:
     ) -> Checked:
         diagnostics = [
             diagnostic
-            for diagnostic in default.checked.diagnostics
+            for diagnostic in default.result.diagnostics
             if _place(diagnostic) not in default.errors or is_certain(diagnostic)
         ]
         hint = phrase(
@@ -306,9 +308,9 @@ class SetCheck:
             name=names[0],
         )
         diagnostics += with_configured_severity(
-            [_missing_arguments_finding(default.checked, names, notes, hint)], self.settings
+            [_missing_arguments_finding(default.result, names, notes, hint)], self.settings
         )
-        return replace(default.checked, diagnostics=tuple(sorted_by_location(diagnostics, str(self.path))))
+        return replace(default.result, diagnostics=tuple(sorted_by_location(diagnostics, str(self.path))))
 
 
 def _sources(result: Checked) -> Sequence[Document]:
@@ -355,12 +357,12 @@ def _is_excused(run: _Run, runs: Sequence[_Run], common: frozenset[Key]) -> bool
 
     This is the case if the set is mixed from several sources, or if the values that vary succeed in another run.
     """
-    if run.is_fine(common) or not run.given.varied:
+    if run.is_fine(common) or not run.argument_set.varied:
         return False
-    if run.given.is_mixed:
+    if run.argument_set.is_mixed:
         return True
-    varied_values = {name: run.given.values[name] for name in run.given.varied}
-    return any(other.is_fine(common) and varied_values.items() <= other.given.values.items() for other in runs)
+    varied_values = {name: run.argument_set.values[name] for name in run.argument_set.varied}
+    return any(other.is_fine(common) and varied_values.items() <= other.argument_set.values.items() for other in runs)
 
 
 def _holds_for_all_sets(diagnostic: Diagnostic) -> bool:
@@ -375,19 +377,21 @@ def _add_condition(diagnostic: Diagnostic, affected_runs: Sequence[_Run], runs: 
     may require a matching value of another argument, such as the number of joints for the kind of arm.
     """
     notes = (*diagnostic.notes, _condition(affected_runs[0], runs))
-    is_offered = diagnostic.severity is Severity.ERROR and all(run.given.is_offered for run in affected_runs)
+    is_offered = diagnostic.severity is Severity.ERROR and all(run.argument_set.is_offered for run in affected_runs)
     return diagnostic.with_changes(notes=notes, severity=Severity.WARNING if is_offered else diagnostic.severity)
 
 
 def _condition(run: _Run, runs: Sequence[_Run]) -> Note:
     """Return a note with the values that differ between a run and the other runs."""
-    values = run.given.values
-    differing_names = [name for name in values if any(other.given.values.get(name) != values[name] for other in runs)]
+    values = run.argument_set.values
+    differing_names = [
+        name for name in values if any(other.argument_set.values.get(name) != values[name] for other in runs)
+    ]
     if not differing_names:
         return Note(phrase("this happens without arguments"))
-    shown_names = [name for name in differing_names if name in run.given.varied] or differing_names
+    shown_names = [name for name in differing_names if name in run.argument_set.varied] or differing_names
     shown_values = " ".join(f"{name}:={values[name]}" for name in shown_names[:_MAX_SHOWN_ARGUMENTS])
-    return Note(phrase("this happens with {values}", values=shown_values), run.given.span)
+    return Note(phrase("this happens with {values}", values=shown_values), run.argument_set.span)
 
 
 def undeclared_argument(diagnostic: Diagnostic) -> str | None:
@@ -402,12 +406,12 @@ def undeclared_argument(diagnostic: Diagnostic) -> str | None:
 
 def _runtime_arguments(sets: Sequence[ArgumentSet]) -> list[str]:
     """Return the names of the arguments whose values are known only when their callers run."""
-    return list(dict.fromkeys(name for argument_set in sets for name in argument_set.open if name))
+    return list(dict.fromkeys(name for argument_set in sets for name in argument_set.runtime_names if name))
 
 
 def _runtime_value_note(sets: Sequence[ArgumentSet]) -> tuple[Note, ...]:
     """Return a note on the first caller with values known only at runtime, or an empty tuple."""
-    call_spans = [argument_set.span for argument_set in sets if argument_set.open]
+    call_spans = [argument_set.span for argument_set in sets if argument_set.runtime_names]
     return (
         (Note(phrase("the values of these arguments are only known when this runs"), call_spans[0]),)
         if call_spans

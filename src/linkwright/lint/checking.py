@@ -153,7 +153,7 @@ class Checker:
 
         if self.values:
             return with_values(self.values), settings_findings
-        check = SetCheck(file, finder, settings, with_values, is_named=file in targets.named)
+        check = SetCheck(file, finder, settings, with_values, is_named=file in targets.named_files)
         configured_sets = settings.arguments_of(file)
         if configured_sets:
             return check.with_configured(configured_sets), settings_findings

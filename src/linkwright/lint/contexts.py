@@ -70,9 +70,9 @@ class FileContext:
         The values of arguments only matter if names are composed from them.
         """
         documents = tuple(id(file.document) for file in facts.files.values())
-        key = (facts.is_library, frozenset(facts.given), documents)
+        key = (facts.is_library, frozenset(facts.arguments), documents)
         stored_facts = self._facts.get(key)
-        if stored_facts is None or (stored_facts.given != facts.given and stored_facts.substitutes_arguments):
+        if stored_facts is None or (stored_facts.arguments != facts.arguments and stored_facts.substitutes_arguments):
             stored_facts = self._facts[key] = facts
         return stored_facts
 

@@ -221,7 +221,7 @@ def _check_codes(rule: Rule, findings: Iterable[Diagnostic]) -> None:
 def _reported(rule: Rule, subject: Subject) -> Iterable[Diagnostic]:
     if not rule.of_sources or subject.expansion is None:
         return rule.check(subject)
-    stored_findings = subject.xacro.found
+    stored_findings = subject.xacro.stored_findings
     if rule.code not in stored_findings:
         stored_findings[rule.code] = tuple(rule.check(subject))
     return stored_findings[rule.code]

@@ -68,7 +68,7 @@ def add_attribute(element: Element, attribute: str, value: str, *, safe: bool = 
     start_tag = find_start_tag(element)
     if source is None or start_tag is None or attribute in element.attributes:
         return None
-    offset = start_tag.room
+    offset = start_tag.insertion_offset
     return Fix((Edit(source.name, offset, offset, f' {attribute}="{escaped(value)}"'),), safe)
 
 

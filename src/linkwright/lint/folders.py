@@ -80,7 +80,7 @@ def relevant_findings(
         targets: the targets of the check.
         paths: the files and folders that the user named.
     """
-    if examined.file in targets.named:
+    if examined.file in targets.named_files:
         return examined.diagnostics
     is_minor = _is_in_minor_folder(examined.file, paths) or _is_generated(examined.file, targets.files)
     is_part = _is_unused_part(examined, others)

@@ -54,7 +54,7 @@ class Directive:
     end: int
     selectors: tuple[tuple[str, int], ...]
     ranges: tuple[tuple[int, int], ...] | None
-    used: set[str] = field(default_factory=set)
+    used_selectors: set[str] = field(default_factory=set)
 
     def suppresses(self, code: str, offset: int) -> bool:
         """Return whether the comment suppresses a finding with a code at an offset.
@@ -64,10 +64,10 @@ class Directive:
         if self.ranges is not None and not any(start <= offset < end for start, end in self.ranges):
             return False
         if not self.selectors:
-            self.used.add("")
+            self.used_selectors.add("")
             return True
         matching_selectors = [selector for selector, _ in self.selectors if matches([canonical(selector)], code)]
-        self.used.update(matching_selectors)
+        self.used_selectors.update(matching_selectors)
         return bool(matching_selectors)
 
 
@@ -146,7 +146,7 @@ class Suppressions:
             return
         for directive in self._all():
             selectors = [selector for selector, _ in directive.selectors if is_selector(selector)] or [""]
-            unused_selectors = [word for word in selectors if word not in directive.used]
+            unused_selectors = [word for word in selectors if word not in directive.used_selectors]
             if not unused_selectors or (directive.selectors and selectors == [""]):
                 continue
             targets = ", ".join(f"'{word}'" for word in unused_selectors if word) or "anything"

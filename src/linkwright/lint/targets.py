@@ -55,7 +55,7 @@ class Targets:
 
     files: tuple[Path, ...]
     packages: tuple[Path, ...]
-    named: frozenset[Path] = frozenset()
+    named_files: frozenset[Path] = frozenset()
 
 
 def find_targets(paths: Iterable[Path], *, with_packages: bool = False) -> Targets:

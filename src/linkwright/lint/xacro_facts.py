@@ -111,7 +111,7 @@ class FileFacts:
     names: set[str] = field(default_factory=set)
     used_arguments: set[str] = field(default_factory=set)
     pasted: set[str] = field(default_factory=set)
-    called: set[str] = field(default_factory=set)
+    called_macros: set[str] = field(default_factory=set)
     blocks: set[str] = field(default_factory=set)
     is_open: bool = False
     arguments_open: bool = False
@@ -236,7 +236,7 @@ class FileFacts:
                 return
         if tag in TAGS and tag != "xacro:call":
             return
-        self.called.add(name.rpartition(".")[2])
+        self.called_macros.add(name.rpartition(".")[2])
         self.calls.append(Definition(name, element, parents, order))
 
     def _collect_mentions(
@@ -248,7 +248,7 @@ class FileFacts:
         self.uses.append(Use(element, attribute, text_mentions, parents, order))
         self.names |= text_mentions.names
         self.used_arguments |= text_mentions.arguments
-        self.pasted |= text_mentions.pasted
+        self.pasted |= text_mentions.pasted_arguments
         self.is_open = self.is_open or text_mentions.is_open
         self.arguments_open = self.arguments_open or text_mentions.arguments_open
 
@@ -285,11 +285,11 @@ class XacroFacts:
         is_library: bool,
     ) -> None:
         self.path = path
-        self.given = arguments
+        self.arguments = arguments
         self.package = package
         self.is_library = is_library
         self.files: dict[Path, FileFacts] = {path: FileFacts.of(document) for path, document in sources.items()}
-        self.found: dict[str, tuple[Diagnostic, ...]] = {}
+        self.stored_findings: dict[str, tuple[Diagnostic, ...]] = {}
 
     @property
     def main(self) -> FileFacts:
@@ -329,7 +329,7 @@ class XacroFacts:
         for facts in self._all():
             mentioned_names |= facts.names | facts.blocks
         if self.substitutes_arguments:
-            for value in self.given.values():
+            for value in self.arguments.values():
                 mentioned_names |= identifiers(value)
         return frozenset(mentioned_names)
 
@@ -341,7 +341,7 @@ class XacroFacts:
     @cached_property
     def called(self) -> frozenset[str]:
         """The names of all macros that a file or a neighbour calls, without namespaces."""
-        return frozenset(name for facts in self._all() for name in facts.called)
+        return frozenset(name for facts in self._all() for name in facts.called_macros)
 
     @cached_property
     def is_open(self) -> bool:

@@ -53,7 +53,7 @@ class Mentions:
 
     names: frozenset[str] = frozenset()
     arguments: frozenset[str] = frozenset()
-    pasted: frozenset[str] = frozenset()
+    pasted_arguments: frozenset[str] = frozenset()
     packages: tuple[tuple[str, int], ...] = ()
     is_open: bool = False
     arguments_open: bool = False

@@ -33,7 +33,7 @@ class ComponentContainer(SingleNode):
         self._graph = graph
         self._library = options.library
         self._for_others = ParameterRules()
-        self._for_others.add(options.for_others)
+        self._for_others.add(options.parameters_of_others)
         self._for_others.add(parse(options.arguments).parameters)
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         self._loaded_nodes: dict[int, RunningNode] = {}
@@ -87,7 +87,7 @@ class ComponentContainer(SingleNode):
             },
             remappings=[_parse_remapping(rule) for rule in request.remap_rules],
             library=self._library,
-            for_others=self._for_others,
+            parameters_of_others=self._for_others,
         )
         try:
             node_id, running_node = self.load(request.package_name, request.plugin_name, options)

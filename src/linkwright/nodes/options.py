@@ -67,7 +67,7 @@ class NodeOptions:
     remappings: list[tuple[str, str]] = field(default_factory=list)
     arguments: list[str] = field(default_factory=list)
     library: DescriptionLibrary = field(default_factory=_new_library)
-    for_others: ParameterRules = field(default_factory=ParameterRules)
+    parameters_of_others: ParameterRules = field(default_factory=ParameterRules)
     environment: Mapping[str, str] = field(default_factory=lambda: os.environ)
     output: Callable[[str], None] = _print_line
     terminal: int | None = None

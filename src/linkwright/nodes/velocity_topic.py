@@ -49,7 +49,7 @@ class VelocityTopic:
         self.frame_id = frame_id
         self._publisher: Publisher[Any] | None = None
         self.name = node.resolve_topic_name(topic)
-        self.foreign: str | None = None
+        self.foreign_type: str | None = None
         self.review()
 
     @property
@@ -72,8 +72,8 @@ class VelocityTopic:
             for endpoint in self._node.graph.endpoints()
             if endpoint.name == self.name and endpoint.gid != own_gid
         ]
-        self.foreign = min({other.type_name for other in other_endpoints} - {TWIST, TWIST_STAMPED}, default=None)
-        if self.foreign is not None:
+        self.foreign_type = min({other.type_name for other in other_endpoints} - {TWIST, TWIST_STAMPED}, default=None)
+        if self.foreign_type is not None:
             self.stop()
             self.close()
             return 0

@@ -48,7 +48,7 @@ class FrameError(Exception):
     def __init__(self, name: str, cycle: Sequence[str] = ()) -> None:
         super().__init__(name)
         self.name = name
-        self.circle = tuple(cycle)
+        self.cycle = tuple(cycle)
 
 
 class Frames:

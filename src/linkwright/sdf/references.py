@@ -129,7 +129,7 @@ def _find_cycle(name: str, frames: Frames) -> tuple[str, ...]:
     try:
         frames.pose(name)
     except FrameError as error:
-        return error.circle
+        return error.cycle
     return ()
 
 

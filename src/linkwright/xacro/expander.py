@@ -209,7 +209,7 @@ class Expander:
                 self.element(item, output, scope, macros)
             elif action == TAG:
                 session.budget.elements -= 2
-                session.place, session.attribute = item, None
+                session.current_node, session.current_attribute = item, None
                 directives.get(item.tag, self._call)(self, Site(item, parent, scope, macros, flag))
             elif action == TEXT:
                 text = self._text(item, scope)
@@ -282,7 +282,7 @@ class Expander:
         for name in plan.evaluated:
             value = result[name]
             if "$" in value:
-                session.place, session.attribute = node, name
+                session.current_node, session.current_attribute = node, name
                 try:
                     value = result[name] = session.evaluate_text(value, scope)
                 except Fault as fault:
@@ -301,7 +301,7 @@ class Expander:
 
     def directive(self, site: Site) -> None:
         """Expand a xacro tag or a macro call."""
-        self.session.place, self.session.attribute = site.node, None
+        self.session.current_node, self.session.current_attribute = site.node, None
         self._directives.get(site.node.tag, self._call)(self, site)
 
     def _text(self, node: Text, scope: Scope) -> Text:
@@ -309,7 +309,7 @@ class Expander:
             self._charge_text(node, node.data)
         if node.cdata or "$" not in node.data:
             return node
-        self.session.place, self.session.attribute = node, None
+        self.session.current_node, self.session.current_attribute = node, None
         try:
             data = self.session.evaluate_text(node.data, scope)
         except Fault as fault:
@@ -342,7 +342,7 @@ class Expander:
         text = node.attributes[name]
         if "$" not in text:
             return text
-        self.session.place, self.session.attribute = node, name
+        self.session.current_node, self.session.current_attribute = node, name
         try:
             return self.session.evaluate(text, scope)
         except Fault as fault:
@@ -439,7 +439,7 @@ class Expander:
     # errors
 
     def _nesting_diagnostic(self) -> Diagnostic:
-        node = self.session.place
+        node = self.session.current_node
         span = node.span() if isinstance(node, Element) else None
         message = phrase("the description is nested too deeply")
         return Diagnostic(

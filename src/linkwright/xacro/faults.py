@@ -136,8 +136,8 @@ class Fault(Exception):  # noqa: N818 - it becomes a diagnostic, and is not part
         self.span: Span | None = None
         self.source: SourceText | None = None
         self.notes: list[Note] = []
-        self.passing = phrase("from here")
-        self.missing: str | None = None
+        self.next_note = phrase("from here")
+        self.missing_name: str | None = None
 
     def within(self, start: int, end: int, shift: int | None = None) -> None:
         """Convert the offsets to offsets in the enclosing text.
@@ -172,13 +172,15 @@ class Fault(Exception):  # noqa: N818 - it becomes a diagnostic, and is not part
 
         Only the same file is searched. A definition without the xacro prefix also changes the hint.
         """
-        if self.missing is None or self.source is None:
+        if self.missing_name is None or self.source is None:
             return None
-        if self.hint is not None and self.hint.startswith(f"'{self.missing}' is defined"):
+        if self.hint is not None and self.hint.startswith(f"'{self.missing_name}' is defined"):
             return None
         used_at = None if self.span is None else self.source.offset(self.span.line, self.span.column)
-        definition = inactive_definition(self.source, "property", self.missing, used_at=used_at)
-        if definition is None and (unprefixed := inactive_definition(self.source, "property", self.missing, prefix="")):
+        definition = inactive_definition(self.source, "property", self.missing_name, used_at=used_at)
+        if definition is None and (
+            unprefixed := inactive_definition(self.source, "property", self.missing_name, prefix="")
+        ):
             self.hint = phrase("write <xacro:property where it is defined: without the prefix the tag has no effect")
             return unprefixed
         return definition
@@ -187,7 +189,7 @@ class Fault(Exception):  # noqa: N818 - it becomes a diagnostic, and is not part
         if self.span is None:
             self.source, self.span = source, span
         elif span is not None:
-            self.notes.append(Note(self.passing, span))
+            self.notes.append(Note(self.next_note, span))
         self.start = self.end = None
 
 

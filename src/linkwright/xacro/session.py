@@ -83,9 +83,9 @@ class Session:
         self.budget = Budget(limits)
         self.file = file
         self.frame: Frame | None = None
-        self.place: Element | Text | None = None
-        self.attribute: str | None = None
-        self.resolving: list[str] = []
+        self.current_node: Element | Text | None = None
+        self.current_attribute: str | None = None
+        self.property_stack: list[str] = []
         self.dependencies: dict[str, None] = {file: None}
         self.root_dir = root_dir
         self._overlay = overlay or Overlay()
@@ -170,7 +170,7 @@ class Session:
             if hint is None and len(name) > len("pi"):
                 hint = did_you_mean(name, provided_names)
         fault = Fault("XAC201", phrase("the property '{name}' is not defined", name=name), start, end, hint)
-        fault.missing = name
+        fault.missing_name = name
         return fault
 
     def nearest_attribute(self, owner: Any, name: str) -> Phrase | None:
@@ -292,7 +292,7 @@ class Session:
 
     def warn_of_unused_arguments(self) -> None:
         """Warn about passed arguments that no file declares or uses, which are probably misspelt."""
-        self.place = self.frame = None
+        self.current_node = self.frame = None
         for name in self.arguments:
             if name not in self.known_arguments:
                 hint = did_you_mean(name, self.known_arguments)
@@ -325,7 +325,7 @@ class Session:
         Returns:
             The finding, or None if it was recorded before.
         """
-        place = self.place
+        place = self.current_node
         if span is None and place is not None:
             span = self._place_of_call(place, called)
         if (code, message, span) in self._reported:
@@ -342,7 +342,7 @@ class Session:
         self._reported.discard((diagnostic.code, diagnostic.message, diagnostic.span))
 
     def _place_of_call(self, place: Element | Text, function: str | None) -> Span | None:
-        attribute = self.attribute
+        attribute = self.current_attribute
         if isinstance(place, Element) and attribute is None:
             return place.span()
         text = place.data if isinstance(place, Text) else place.attributes.get(attribute or "", "")
@@ -411,7 +411,7 @@ def _yaml_fault(path: str, text: str, error: YamlError) -> Fault:
         if text[at - 1 : at] == "\t":
             at -= 1
         fault.span = source.span(at)
-        fault.passing = phrase("the file is loaded here")
+        fault.next_note = phrase("the file is loaded here")
         if text[at : at + 1] == "\t":
             fault.hint = phrase("indent YAML with spaces, not tabs")
     return fault

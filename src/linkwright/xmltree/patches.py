@@ -40,7 +40,7 @@ class StartTag:
     """
 
     start: int
-    room: int
+    insertion_offset: int
     end: int
     is_whole: bool
 
@@ -176,7 +176,7 @@ def insertion(
     )
     if tag.is_whole:
         lines = newline.join(child_indent + block(element, child_indent, step, newline) for element in new_elements)
-        return Replacement(tag.room, end, f">{newline}{lines}{newline}{owner_indent}</{owner.tag}>")
+        return Replacement(tag.insertion_offset, end, f">{newline}{lines}{newline}{owner_indent}</{owner.tag}>")
     after_range = element_range(after) if after is not None else None
     if in_line and not any(True for element in new_elements for _ in element.elements()):
         at = after_range[1] if after_range else tag.end if first else text.rindex("</", start, end)

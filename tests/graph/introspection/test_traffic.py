@@ -27,7 +27,7 @@ def test_figures_of_a_steady_topic():
     assert traffic is not None
     assert traffic.messages_per_second == pytest.approx(10)
     assert traffic.bytes_per_second == pytest.approx(sum(range(100, 111)))
-    assert (traffic.least_size, traffic.mean_size, traffic.max_size, traffic.count) == (100, 105, 110, 11)
+    assert (traffic.min_size, traffic.mean_size, traffic.max_size, traffic.count) == (100, 105, 110, 11)
     assert traffic.age_ns == SECOND
 
 

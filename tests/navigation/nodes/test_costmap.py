@@ -54,7 +54,7 @@ def start(graph, scene):
     def start(name="global_costmap", parameters=GLOBAL, **more):
         options = NodeOptions()
         for key, value in {**parameters, **more}.items():
-            options.for_others.set(f"/{name}/{name}", key, value)
+            options.parameters_of_others.set(f"/{name}/{name}", key, value)
         node = make_costmap(scene.node, graph, options, name)
         made.append(node)
         if node.trigger_configure() == TransitionCallbackReturn.SUCCESS:

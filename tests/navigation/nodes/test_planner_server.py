@@ -72,7 +72,7 @@ async def server(graph, scene):
         rules = ParameterRules()
         for key, value in {**COSTMAP, **(costmap or {})}.items():
             rules.set("/global_costmap/global_costmap", key, value)
-        node = kind(graph, NodeOptions(parameters={"autostart_node": True, **parameters}, for_others=rules))
+        node = kind(graph, NodeOptions(parameters={"autostart_node": True, **parameters}, parameters_of_others=rules))
         made.append(node)
         scene.tell_map(walls() if grid is None else grid)
         scene.tell_pose()
@@ -249,7 +249,7 @@ async def test_parameters_of_nav2_bringup_load_without_a_warning(graph, log, kin
 async def test_in_a_container_the_costmap_has_the_parameters_of_its_process(scene, graph):
     rules = ParameterRules()
     rules.set("/global_costmap/global_costmap", "robot_radius", 0.33)
-    container = ComponentContainer(graph, NodeOptions(for_others=rules))
+    container = ComponentContainer(graph, NodeOptions(parameters_of_others=rules))
     request = load_request()
     request.package_name, request.plugin_name = "nav2_planner", "nav2_planner::PlannerServer"
     client = scene.node.create_client(

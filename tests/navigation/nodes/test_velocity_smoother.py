@@ -24,7 +24,7 @@ def test_no_axis_leaves_its_limits(wanted, now, scaled):
     after = smooth_velocities(LIMITS, now, wanted, 0.05, keep_direction=scaled)
     for limits, before, velocity, goal in zip(LIMITS, now, after, wanted, strict=True):
         assert abs(velocity - before) <= limits.change(before, limits.clamped(goal), 0.05) + 1e-12
-        assert min(before, limits.least) - 1e-12 <= velocity <= max(before, limits.most) + 1e-12
+        assert min(before, limits.min_velocity) - 1e-12 <= velocity <= max(before, limits.max_velocity) + 1e-12
 
 
 def test_the_direction_stays_where_it_is_asked_for():

@@ -24,8 +24,8 @@ class Spread:
     """
 
     mean: float
-    least: float
-    most: float
+    minimum: float
+    maximum: float
     deviation: float
     count: int
 
@@ -45,7 +45,7 @@ class Spread:
     def bounds(self) -> str:
         """Return the output line of ``topic hz`` and ``topic delay`` with the minimum, maximum and deviation."""
         return (
-            f"\tmin: {self.least / NANOSECONDS_PER_SECOND:.3f}s max: {self.most / NANOSECONDS_PER_SECOND:.3f}s "
+            f"\tmin: {self.minimum / NANOSECONDS_PER_SECOND:.3f}s max: {self.maximum / NANOSECONDS_PER_SECOND:.3f}s "
             f"std dev: {self.deviation / NANOSECONDS_PER_SECOND:.5f}s window: {self.count}"
         )
 
@@ -124,7 +124,7 @@ class BandwidthWindow(TrafficWindow):
         if traffic is None:
             return None
         size_text = _size_formatter(traffic.bytes_per_second)
-        sizes = {"mean": traffic.mean_size, "min": traffic.least_size, "max": traffic.max_size}
+        sizes = {"mean": traffic.mean_size, "min": traffic.min_size, "max": traffic.max_size}
         figures = " ".join(f"{name}: {size_text(value)}" for name, value in sizes.items())
         return f"{size_text(traffic.bytes_per_second)}/s from {traffic.count} messages\n\tMessage size {figures}"
 
@@ -152,8 +152,8 @@ def rate_table(spreads: Mapping[str, Spread]) -> str:
         (
             topic,
             f"{spread.rate:.3f}",
-            f"{spread.least / NANOSECONDS_PER_SECOND:.3f}",
-            f"{spread.most / NANOSECONDS_PER_SECOND:.3f}",
+            f"{spread.minimum / NANOSECONDS_PER_SECOND:.3f}",
+            f"{spread.maximum / NANOSECONDS_PER_SECOND:.3f}",
             f"{spread.deviation / NANOSECONDS_PER_SECOND:.5f}",
             str(spread.count),
         )

@@ -37,7 +37,7 @@ class Goal:
 
     def __init__(self, handle: ServerGoalHandle, node: ControllerNode) -> None:
         self.request = handle.request
-        self.ended = False
+        self.has_ended = False
         self._handle = handle
         self._node = node
 
@@ -67,8 +67,8 @@ class Goal:
         self._handle.canceled(result)
 
     def _end(self, end: Callable[[Any], object], result: Any) -> None:
-        if not self.ended:
-            self.ended = True
+        if not self.has_ended:
+            self.has_ended = True
             self._node.call_on_loop(partial(self._end_on_loop, end, result))
 
     def _end_on_loop(self, end: Callable[[Any], object], result: Any) -> None:
@@ -134,5 +134,5 @@ class ControllerAction:
         self._node.post(partial(self._cancel_goal, handle))
 
     def _cancel_goal(self, handle: ServerGoalHandle) -> None:
-        if self._goal is not None and self._goal.belongs_to(handle) and not self._goal.ended:
+        if self._goal is not None and self._goal.belongs_to(handle) and not self._goal.has_ended:
             self._cancel(self._goal)

@@ -109,7 +109,7 @@ class Controller(ABC, Generic[P]):
         self.states: list[StateInterface] = []
         self.references: list[CommandInterface] = []
         self.exported: list[StateInterface] = []
-        self.chained = False
+        self.is_chained = False
         self.time_ns = 0
         self.state: LifecycleState = UNCONFIGURED
         self._parameters: ParameterTable[P] = ParameterTable(place.node.graph_node, self.PARAMETERS)
@@ -221,6 +221,6 @@ class Controller(ABC, Generic[P]):
     def step(self, time_ns: int, period_s: float) -> None:
         """Run an update: first `update_references` if no controller commands them, then `update`."""
         self.time_ns = time_ns
-        if not self.chained and self.references:
+        if not self.is_chained and self.references:
             self.update_references(time_ns, period_s)
         self.update(time_ns, period_s)

@@ -86,7 +86,7 @@ class DriveOdometry:
         tf_output = transforms_topic(node, transforms)
         self._topics = OdometryTopics(frame, child, output, None, pose_variances, velocity_variances)
         self._transforms = OdometryTopics(frame, child, None, tf_output if publishes_transforms else None)
-        self._fixed_pose = None if publishes_pose else Odometer().place.transform
+        self._fixed_pose = None if publishes_pose else Odometer().pose.transform
         self._period_ns = round(NANOSECONDS_PER_SECOND / rate) if rate > 0.0 else 0
         self._last_published_ns: int | None = None
 
@@ -100,7 +100,7 @@ class DriveOdometry:
         is_wanted = self._topics.is_wanted
         if not is_wanted and not self._transforms.is_wanted:
             return
-        stamp, pose = Time(*divmod(time_ns, NANOSECONDS_PER_SECOND)), self.odometer.place.transform
+        stamp, pose = Time(*divmod(time_ns, NANOSECONDS_PER_SECOND)), self.odometer.pose.transform
         if is_wanted:
             self._topics.publish(stamp, self._fixed_pose or pose, *self.odometer.velocity)
         self._transforms.publish(stamp, pose, 0.0, 0.0, 0.0)

@@ -317,8 +317,8 @@ class JointTrajectoryController(Controller[Parameters]):
         tolerances, late_s = self._tolerances, (time_ns - next_sample.point_ns) / NANOSECONDS_PER_SECOND
         violates_path = misses_goal = False
         if not self._is_held:
-            violates_path = (first or not next_sample.ended) and not self._is_within(tolerances.path)
-            misses_goal = next_sample.ended and not self._is_within(tolerances.goal)
+            violates_path = (first or not next_sample.has_ended) and not self._is_within(tolerances.path)
+            misses_goal = next_sample.has_ended and not self._is_within(tolerances.goal)
         is_overdue = misses_goal and 0.0 < tolerances.goal_time_s < late_s
         if not violates_path and not is_overdue:
             self._write(next_sample.state, period_s)
@@ -338,12 +338,12 @@ class JointTrajectoryController(Controller[Parameters]):
                 f"Aborted due to goal_time_tolerance exceeding by {late_s:f} seconds",
                 "Exceeded goal_time_tolerance: holding position...",
             )
-        elif next_sample.ended and not misses_goal and self._goal is not None:
+        elif next_sample.has_ended and not misses_goal and self._goal is not None:
             self._goal.succeed(self._result(error_string="Goal successfully reached!"))
             self._goal = None
             self.node.logger.info("Goal reached, success!")
             self._hold(next_sample.state)
-        elif next_sample.ended and not self._is_held and 0.0 < self._timeout_s < late_s:
+        elif next_sample.has_ended and not self._is_held and 0.0 < self._timeout_s < late_s:
             self.node.logger.warning("Aborted due to command timeout")
             self._hold()
 
@@ -461,11 +461,11 @@ class JointTrajectoryController(Controller[Parameters]):
             sample = self._trajectory.sample(nanoseconds(request.time))
             if sample is None:
                 response.message = "Requested sample time is earlier than the current trajectory start time."
-            elif sample.ended:
+            elif sample.has_ended:
                 response.message = "Requested sample time precedes the current trajectory end time."
         if response.message:
             self.node.logger.error(response.message)
-        response.success = sample is not None and not sample.ended
+        response.success = sample is not None and not sample.has_ended
         if self._active:
             state = self._current if sample is None else sample.state
             response.name = list(self.parameters.joints)

@@ -167,7 +167,7 @@ class PidController(Controller[Parameters]):
     # --- topics -------------------------------------------------------------------------------------------------------
 
     def _on_reference(self, message: Any) -> None:
-        if self.chained or not self.references:
+        if self.is_chained or not self.references:
             return
         values = self._ordered_values(message)
         for reference, value in zip(self.references, values, strict=False):

@@ -36,7 +36,7 @@ class InterfaceDescription:
     minimum: float = nan
     maximum: float = nan
     initial_value: float = nan
-    limited: bool = True
+    is_limited: bool = True
     parameters: Mapping[str, str] = field(default_factory=dict)
 
 

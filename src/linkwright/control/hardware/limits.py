@@ -69,7 +69,7 @@ def limits_of(joint: Joint, component: ComponentDescription) -> JointLimits:
         acceleration,
         deceleration if isfinite(deceleration) else acceleration,
         joint.safety,
-        frozenset(command.name for command in component.commands if command.limited),
+        frozenset(command.name for command in component.commands if command.is_limited),
     )
 
 

@@ -32,7 +32,7 @@ class Loaded:
     fallbacks: tuple[str, ...] = ()
     period_ns: int = 0
     next_ns: int = 0
-    before: list[float] = field(default_factory=list)
+    last_commands: list[float] = field(default_factory=list)
     timing: Timing | None = None
 
     @property
@@ -82,10 +82,10 @@ class Loaded:
             return ""
         values = [command.value for command in commands]
         if isfinite(sum(values)) or all(map(isfinite, values)):  # A sum is fast, but may overflow.
-            self.before = values
+            self.last_commands = values
             return ""
         replaced_name = ""
-        before = self.before
+        before = self.last_commands
         for index, command in enumerate(commands):
             value = command.value
             if isfinite(value):

@@ -356,7 +356,7 @@ class ControllerManager:
 
     def _set_chained(self, loaded: Loaded, *, chained: bool) -> None:
         if self._call(loaded, "on_set_chained_mode", lambda: loaded.controller.on_set_chained_mode(chained)):
-            loaded.controller.chained = chained
+            loaded.controller.is_chained = chained
 
     def _activate(self, loaded: Loaded) -> str:
         """Activate a controller, and return an error message, or an empty string if that succeeded."""
@@ -383,7 +383,7 @@ class ControllerManager:
             controller.commands, controller.states = [], []
             return failure
         resources.claims.update(dict.fromkeys(claims, name))
-        loaded.next_ns, loaded.before = 0, [nan] * len(controller.commands)
+        loaded.next_ns, loaded.last_commands = 0, [nan] * len(controller.commands)
         if not self._call(loaded, "on_activate", controller.on_activate):
             label = controller.state.label
             failure = f"After activation, controller '{name}' is in state '{label}' (2), expected 'active' (3)."

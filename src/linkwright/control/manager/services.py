@@ -104,7 +104,7 @@ class ManagerServices:
         message.state = controller.state.label
         message.update_rate = int(controller.update_rate)
         message.claimed_interfaces = [name for name, owner in resources.claims.items() if owner == loaded.name]
-        message.is_chainable, message.is_chained = loaded.is_chainable, controller.chained
+        message.is_chainable, message.is_chained = loaded.is_chainable, controller.is_chained
         if not loaded.is_configured:
             return message
         message.required_command_interfaces = loaded.claimed_commands(resources.command_names)

@@ -180,7 +180,7 @@ class SwitchPlanner:
                 return problem
             if name in switch.from_chained:
                 switch.from_chained.remove(name)
-            elif not commanded.controller.chained and name not in switch.to_chained:
+            elif not commanded.controller.is_chained and name not in switch.to_chained:
                 switch.to_chained.append(name)
         return ""
 
@@ -188,7 +188,7 @@ class SwitchPlanner:
         loaded = self._controllers[name]
         if not loaded.is_active:
             return f"Controller with name '{name}' can not be deactivated since it is not active."
-        if not loaded.controller.chained:
+        if not loaded.controller.is_chained:
             return ""
         for other in self._preceding_controllers(loaded):
             if other.is_inactive and other.name in self._switch.activate:

@@ -31,7 +31,7 @@ class Odometer:
 
     def reset(self, x: float = 0.0, y: float = 0.0, yaw: float = 0.0) -> None:
         """Set the pose, in m and rad, and the velocity to zero."""
-        self.place = PlanarPose(x, y, yaw)
+        self.pose = PlanarPose(x, y, yaw)
         self.reset_velocity()
 
     def reset_velocity(self) -> None:
@@ -55,4 +55,4 @@ class Odometer:
 
     def _integrate(self, velocity: Velocity, seconds: float) -> None:
         forward, sideways, angular = velocity
-        self.place.follow_arc(forward * seconds, sideways * seconds, angular * seconds)
+        self.pose.follow_arc(forward * seconds, sideways * seconds, angular * seconds)

@@ -40,7 +40,7 @@ class Sample:
     state: MotionState
     index: int
     point_ns: int
-    ended: bool
+    has_ended: bool
 
 
 class Trajectory:
@@ -90,7 +90,7 @@ class Trajectory:
         self._segments: list[Segment | None] = [None] * len(self.points)
         self._starts = [self._begin_ns, first_ns, *(self._start_ns + point.time_ns for point in self.points[1:])]
         self._index = 0
-        self._end_sample = Sample(end_state, len(self.points) - 1, self._starts[-1], ended=True)
+        self._end_sample = Sample(end_state, len(self.points) - 1, self._starts[-1], has_ended=True)
 
     def sample(self, time_ns: int) -> Sample | None:
         """Return the sample at a time in nanoseconds, or None before the time passed to `begin`.
@@ -107,7 +107,7 @@ class Trajectory:
             index = next(index for index in range(len(self.points)) if time_ns < starts[index + 1])
             self._index = index
         passed_index = max(index - 1, 0)
-        return Sample(self._state(index, time_ns), passed_index, starts[passed_index + 1], ended=False)
+        return Sample(self._state(index, time_ns), passed_index, starts[passed_index + 1], has_ended=False)
 
     def _state(self, index: int, time_ns: int) -> MotionState:
         if not self._is_interpolated:

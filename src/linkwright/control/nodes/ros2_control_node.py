@@ -67,7 +67,7 @@ class Ros2ControlNode(SingleNode):
     def _start(self, options: NodeOptions) -> None:
         ros_arguments = parse(options.arguments)
         rules = ParameterRules()
-        rules.add(options.for_others)
+        rules.add(options.parameters_of_others)
         rules.add(ros_arguments.parameters)
         remappings = [*ros_arguments.remappings_for(self.DEFAULT_NAME), *options.remappings]
         logger = self._node.get_logger()

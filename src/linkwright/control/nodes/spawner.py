@@ -38,7 +38,7 @@ class Spawner(ManagerProgram):
         arguments = parse_arguments(_parser(), remove_ros_arguments(options.arguments))
         self._node, _ = create_node(graph, options, f"spawner_{arguments.controller_names[0]}")
         self._arguments = arguments
-        process_files = [*options.for_others.files, *parse(options.arguments).parameters.files]
+        process_files = [*options.parameters_of_others.files, *parse(options.arguments).parameters.files]
         self._files = list(dict.fromkeys([*(arguments.param_file or ()), *process_files]))
         with starting(self._node):
             for path in self._files:

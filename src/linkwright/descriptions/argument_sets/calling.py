@@ -56,7 +56,7 @@ class ArgumentSet:
     """
 
     values: Mapping[str, str]
-    open: tuple[str, ...] = ()
+    runtime_names: tuple[str, ...] = ()
     span: Span | None = None
     is_certain: bool = True
     varied: tuple[str, ...] = ()
@@ -66,7 +66,7 @@ class ArgumentSet:
     @property
     def is_complete(self) -> bool:
         """Whether all values are known and certain to occur in combination."""
-        return self.is_certain and not self.open
+        return self.is_certain and not self.runtime_names
 
 
 def argument_sets(path: str | Path, finder: PackageFinder | None = None) -> tuple[ArgumentSet, ...]:
@@ -108,7 +108,7 @@ class ArgumentSets:
             )
         merged: dict[object, ArgumentSet] = {}
         for argument_set in sets:
-            key = (tuple(sorted(argument_set.values.items())), argument_set.open)
+            key = (tuple(sorted(argument_set.values.items())), argument_set.runtime_names)
             previous = merged.get(key)
             if previous is None:
                 merged[key] = argument_set
@@ -119,7 +119,7 @@ class ArgumentSets:
                 )
                 merged[key] = replace(previous, is_certain=is_certain, is_offered=is_offered)
         sorted_sets = sorted(
-            merged.values(), key=lambda argument_set: (not argument_set.is_complete, bool(argument_set.open))
+            merged.values(), key=lambda argument_set: (not argument_set.is_complete, bool(argument_set.runtime_names))
         )
         complete = [argument_set for argument_set in sorted_sets if argument_set.is_complete][:MAX_VARIATIONS]
         return (

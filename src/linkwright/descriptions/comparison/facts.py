@@ -42,7 +42,7 @@ class Fact:
     element: Element | None
     attribute: str
     rotation: tuple[float, ...] = ()
-    direction: bool = False
+    is_direction: bool = False
 
     def equals(self, other: Fact, normalize: Normalize, normalize_other: Normalize) -> bool:
         """Return whether a property is equal in two descriptions, within the tolerances.
@@ -56,7 +56,7 @@ class Fact:
             return False
         if self.rotation:
             return _angle(self.rotation, other.rotation) <= ROTATION_TOLERANCE
-        if self.direction:
+        if self.is_direction:
             return _distance(_unit_vector(self.numbers), _unit_vector(other.numbers)) <= ROTATION_TOLERANCE
         return all(map(self._is_close, self.numbers, other.numbers))
 
@@ -151,7 +151,7 @@ def joint_blocks(joint: Joint) -> list[Block]:
     own_block.words("child", joint.child, nearest(element, "child"), "link")
     own_block.origin(joint.origin, element)
     if joint.type not in ("fixed", "floating"):
-        own_block.facts["axis"] = Fact("", joint.axis, "", nearest(element, "axis"), "xyz", direction=True)
+        own_block.facts["axis"] = Fact("", joint.axis, "", nearest(element, "axis"), "xyz", is_direction=True)
     unit = "m" if joint.type == "prismatic" else "rad"
     force = "N" if joint.type == "prismatic" else "N m"
     units = {"lower": unit, "upper": unit, "effort": force, "velocity": f"{unit}/s"}

@@ -139,7 +139,9 @@ def _argument_candidate(site: Element, name: str, default: list[Place], index: i
         texts[value_index] = current.write(number, tolerance)
         return f' {name}="{escaped(" ".join(texts))}"'
 
-    return Candidate(Place(site.source, tag.room, tag.room), current.value, write, current.is_choice)
+    return Candidate(
+        Place(site.source, tag.insertion_offset, tag.insertion_offset), current.value, write, current.is_choice
+    )
 
 
 def _constant_keys(path: str) -> tuple[str, ...]:

@@ -92,7 +92,7 @@ class EditHistory:
         for path, text in plan.texts.items():
             old_bytes = _read_file(path)
             current = decoded(old_bytes, path)
-            if current.text != plan.before[path]:
+            if current.text != plan.old_texts[path]:
                 raise EditRefusedError(_changed_file_finding(path))
             byte_order_mark = old_bytes[: len(old_bytes) - len(current.text.encode(current.encoding))]
             files[path] = old_bytes, byte_order_mark + text.encode(current.encoding, "xmlcharrefreplace")

@@ -50,7 +50,7 @@ class Candidate:
         is_choice: whether the value is 1 or -1, which may be a factor that selects a side or a direction.
     """
 
-    place: Place
+    text_range: Place
     value: float
     write: Callable[[float, float], str]
     is_choice: bool = False

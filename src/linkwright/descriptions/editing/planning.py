@@ -52,8 +52,8 @@ class EditPlan:
     """
 
     texts: dict[str, str]
-    before: dict[str, str]
-    also: tuple[str, ...] = ()
+    old_texts: dict[str, str]
+    side_effects: tuple[str, ...] = ()
 
 
 def plan_edit(description: Description, request: EditRequest, allowed: Allowed = lambda _: None) -> EditPlan:
@@ -188,34 +188,36 @@ class _Planner:
 
         The reason for a failure is appended to `attempts`.
         """
-        refusal_reason = self._allowed(os.path.realpath(candidate.place.source.name))
+        refusal_reason = self._allowed(os.path.realpath(candidate.text_range.source.name))
         if refusal_reason is not None:
-            attempts.append(Attempt(candidate.place, forbidden=refusal_reason))
+            attempts.append(Attempt(candidate.text_range, forbidden=refusal_reason))
             return None
         current = self._values(target.attribute)[index]
         guess, tolerance = candidate.value + requested - current, EXACT
         for _ in range(2):
             guess = float(shortest_text(guess, tolerance))
-            trial = self._try_text(candidate.place, candidate.write(guess, tolerance))
+            trial = self._try_text(candidate.text_range, candidate.write(guess, tolerance))
             values = None if trial is None else self._numbers_in(trial, target)
             if trial is None or values is None:
-                attempts.append(Attempt(candidate.place, error=True))
+                attempts.append(Attempt(candidate.text_range, fails_to_expand=True))
                 return None
             change = values[index] - current
             slope = change / (guess - candidate.value) if guess != candidate.value else 0.0
             if abs(slope) < _MIN_SLOPE:
                 return None  # the text does not affect the requested number
             if candidate.is_choice and not any(same(abs(slope), plain_slope) for plain_slope in _PLAIN_SLOPES):
-                attempts.append(Attempt(candidate.place, choice=True))
+                attempts.append(Attempt(candidate.text_range, is_choice=True))
                 return None
             side_effects = self._side_effects(trial, target, index, values)
             if side_effects and not self._request.together:
-                attempts.append(Attempt(candidate.place, also=side_effects, doubtful=candidate.is_choice))
+                attempts.append(
+                    Attempt(candidate.text_range, side_effects=side_effects, may_be_choice=candidate.is_choice)
+                )
                 return None
             if same(values[index], requested):
                 return _EditedDescription(trial, side_effects)
             guess, tolerance = candidate.value + (requested - current) / slope, EXACT / abs(slope) / 2
-        attempts.append(Attempt(candidate.place))
+        attempts.append(Attempt(candidate.text_range))
         return None
 
     def _edit_together(
@@ -277,7 +279,10 @@ class _Planner:
         if trial is None or values is None or not all(map(same, values, requested)) or side_effects:
             raise EditRefusedError(
                 refusal(
-                    text_range, None, [Attempt(text_range, also=side_effects, error=not side_effects)], tag=target.tag
+                    text_range,
+                    None,
+                    [Attempt(text_range, side_effects=side_effects, fails_to_expand=not side_effects)],
+                    tag=target.tag,
                 )
             )
         self._now = trial
@@ -287,7 +292,9 @@ class _Planner:
             source_element = self._source_element(element)
             tag = find_start_tag(source_element)
             if tag is not None and source_element.source is not None:
-                return Place(source_element.source, tag.room, tag.room), f' {target.attribute}="{text}"'
+                return Place(
+                    source_element.source, tag.insertion_offset, tag.insertion_offset
+                ), f' {target.attribute}="{text}"'
             raise EditRefusedError(_not_written_finding(element))
         owner = target.owner(self._now.root)
         assert owner is not None, "it was found before"

@@ -24,12 +24,12 @@ class Attempt:
         fails_to_expand: whether the description could not be expanded with the edit.
     """
 
-    place: Place
-    also: tuple[str, ...] = ()
+    text_range: Place
+    side_effects: tuple[str, ...] = ()
     forbidden: Diagnostic | None = None
-    choice: bool = False
-    doubtful: bool = False
-    error: bool = False
+    is_choice: bool = False
+    may_be_choice: bool = False
+    fails_to_expand: bool = False
 
 
 def refusal(place: Place, index: int | None, attempts: Sequence[Attempt], tag: str = "") -> Diagnostic:
@@ -43,19 +43,19 @@ def refusal(place: Place, index: int | None, attempts: Sequence[Attempt], tag: s
     """
     text = " ".join(place.text.split())
     attempts_by_span = {
-        attempt.place.span: attempt
+        attempt.text_range.span: attempt
         for attempt in attempts
-        if attempt.place != place and (attempt.also or attempt.choice)
+        if attempt.text_range != place and (attempt.side_effects or attempt.is_choice)
     }
     notes = tuple(map(_attempt_note, attempts_by_span.values()))[:_MAX_NAMES]
     best_attempt = min(
-        (attempt for attempt in attempts if attempt.also),
-        key=lambda attempt: (len(attempt.also), attempt.doubtful),
+        (attempt for attempt in attempts if attempt.side_effects),
+        key=lambda attempt: (len(attempt.side_effects), attempt.may_be_choice),
         default=None,
     )
     forbidden = next((attempt.forbidden for attempt in attempts if attempt.forbidden is not None), None)
     if best_attempt is not None:
-        names_text = _joined_names(best_attempt.also)
+        names_text = _joined_names(best_attempt.side_effects)
         hint = phrase(
             "add a parameter or property for this part to the macro or expression here, or change the "
             "text for all of these parts"
@@ -73,13 +73,15 @@ def refusal(place: Place, index: int | None, attempts: Sequence[Attempt], tag: s
 
 
 def _attempt_note(attempt: Attempt) -> Note:
-    text = " ".join(attempt.place.text.split())
-    if attempt.choice:
+    text = " ".join(attempt.text_range.text.split())
+    if attempt.is_choice:
         return Note(
-            phrase(("'{text}' is a factor that selects a side, so it is not changed"), text=text), attempt.place.span
+            phrase(("'{text}' is a factor that selects a side, so it is not changed"), text=text),
+            attempt.text_range.span,
         )
     return Note(
-        phrase(("'{text}' also determines {what}"), text=text, what=_joined_names(attempt.also)), attempt.place.span
+        phrase(("'{text}' also determines {what}"), text=text, what=_joined_names(attempt.side_effects)),
+        attempt.text_range.span,
     )
 
 

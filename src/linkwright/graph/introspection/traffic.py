@@ -25,7 +25,7 @@ class Traffic:
     messages_per_second: float
     bytes_per_second: float
     mean_size: float
-    least_size: int
+    min_size: int
     max_size: int
     count: int
     age_ns: int
@@ -73,7 +73,7 @@ class TrafficWindow:
             messages_per_second=interval_count * NANOSECONDS_PER_SECOND / span_ns,
             bytes_per_second=sum(sizes) * NANOSECONDS_PER_SECOND / (now_ns - first_ns),
             mean_size=sum(sizes) / len(sizes),
-            least_size=min(sizes),
+            min_size=min(sizes),
             max_size=max(sizes),
             count=len(sizes),
             age_ns=now_ns - first_ns,

@@ -284,7 +284,7 @@ class _Rule:
     """
 
     node: str | None
-    kind: str
+    scheme: str
     source: str
     target: str
 
@@ -326,7 +326,7 @@ class Remappings:
             InvalidTopicNameError: a side of a rule is not a valid topic name.
         """
         for rule in self._rules:
-            if rule.source.startswith("__") or rule.kind == _SERVICE or rule.node not in (None, node_name):
+            if rule.source.startswith("__") or rule.scheme == _SERVICE or rule.node not in (None, node_name):
                 continue
             if expand_topic_name(rule.source, node_name, namespace) == full_name:
                 return expand_topic_name(rule.target, node_name, namespace)
@@ -339,7 +339,7 @@ class Remappings:
             InvalidServiceNameError: a side of a rule is not a valid name.
         """
         for rule in self._rules:
-            if rule.source.startswith("__") or rule.kind == _TOPIC or rule.node not in (None, node_name):
+            if rule.source.startswith("__") or rule.scheme == _TOPIC or rule.node not in (None, node_name):
                 continue
             if expand_service_name(rule.source, node_name, namespace) == full_name:
                 return expand_service_name(rule.target, node_name, namespace)

@@ -34,7 +34,7 @@ class Omissions:
         self._log = log
         self._wanted = skip_all
         self._command = command
-        self.any = False
+        self.has_skipped = False
         self._unreported: list[Note] = []
 
     def skip(self, error: LinkwrightError) -> bool:
@@ -45,10 +45,12 @@ class Omissions:
         Returns:
             True if the part is skipped; False if the error must be reported.
         """
-        is_consequence = self.any and any(diagnostic.code in _UNSET_VALUE_CODES for diagnostic in error.diagnostics)
+        is_consequence = self.has_skipped and any(
+            diagnostic.code in _UNSET_VALUE_CODES for diagnostic in error.diagnostics
+        )
         if not (is_consequence or is_unavailable(error) or (self._wanted and _is_missing(error))):
             return False
-        self.any = True
+        self.has_skipped = True
         self._unreported += [Note(diagnostic.message, diagnostic.span) for diagnostic in error.diagnostics]
         return True
 

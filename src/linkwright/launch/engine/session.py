@@ -96,7 +96,9 @@ class LaunchSession:
             await self._handle_events()
         finally:
             await self._close()
-        has_run_nothing = self._omissions.any and not self.options.skip_missing and next(self._process_numbers) == 1
+        has_run_nothing = (
+            self._omissions.has_skipped and not self.options.skip_missing and next(self._process_numbers) == 1
+        )
         return not (self._failures or has_run_nothing)
 
     @property

@@ -32,7 +32,7 @@ def undeclared_names(entities: Iterable[LaunchDescriptionEntity], names: Iterabl
     The result is empty if the declarations of some included descriptions are unknown before the launch.
     """
     declarations = _Declarations.by(entities)
-    return [] if declarations.incomplete else [name for name in names if name not in declarations.names]
+    return [] if declarations.is_incomplete else [name for name in names if name not in declarations.names]
 
 
 class _TooDeepError(Exception):
@@ -51,7 +51,7 @@ class _Declarations:
     def __init__(self) -> None:
         self.arguments: dict[str, DeclareLaunchArgument] = {}
         self.names: set[str] = set()
-        self.incomplete = False
+        self.is_incomplete = False
 
     @classmethod
     def by(cls, entities: Iterable[LaunchDescriptionEntity], *, conditional: bool = False) -> _Declarations:
@@ -81,7 +81,7 @@ class _Declarations:
             _TooDeepError: the entities are nested too deeply.
         """
         if depth > _MAX_DEPTH:
-            self.incomplete = True
+            self.is_incomplete = True
             raise _TooDeepError
         for entity in entities:
             if isinstance(entity, ResetLaunchConfigurations):
@@ -96,9 +96,9 @@ class _Declarations:
             try:
                 children = entity.describe_sub_entities()
                 conditional_children = entity.describe_conditional_sub_entities()
-                self.incomplete |= entity.hides_entities()
+                self.is_incomplete |= entity.hides_entities()
             except LinkwrightError:
-                self.incomplete = True
+                self.is_incomplete = True
                 continue  # the launch reports this error when it visits the include
             self.collect(children, conditional=conditional, set_outside=inner_set_names, depth=depth + 1)
             for _, conditional_entities in conditional_children:

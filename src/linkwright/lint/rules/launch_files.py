@@ -170,7 +170,7 @@ class LaunchedFileMissing(Rule):
         package = subject.package
         if package is None:
             return
-        created_files = {created_file for file in package.launch_files.values() for created_file in file.made}
+        created_files = {created_file for file in package.launch_files.values() for created_file in file.written_files}
         for file in package.launch_files.values():
             for shared_file in file.paths:
                 if (shared_file.package, shared_file.path) not in created_files:

@@ -130,7 +130,7 @@ class FolderNotInstalled(PackageRule):
             yield from self._check_cmake(package, package.cmake)
 
     def _check_setup(self, package: PackageContext, setup: SetupFile) -> Iterator[Diagnostic]:
-        if not setup.call or not setup.is_complete:
+        if not setup.has_call or not setup.is_complete:
             return
         files = {file for item in setup.installed for file in item.files(package.folder)}
         installed_folders = {file.rpartition("/")[0] for file in files}

@@ -129,7 +129,7 @@ class MarkerNotInstalled(PackageRule):
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
         """Yield a finding for the marker and for the ``package.xml`` if they are not installed."""
         setup = package.setup
-        if setup is None or not setup.call or not setup.is_complete or not is_ament_python(package):
+        if setup is None or not setup.has_call or not setup.is_complete or not is_ament_python(package):
             return
         has_marker = any(
             item.destination == _INDEX_FOLDER or item.text.startswith("resource/") for item in setup.installed

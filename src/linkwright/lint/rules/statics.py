@@ -38,7 +38,7 @@ class Contact(NamedTuple):
     """
 
     link: Link
-    place: Vector3
+    lowest_point: Vector3
     is_wheel: bool
 
 
@@ -98,11 +98,11 @@ class WheelsNotLevel(Rule):
             return
         tolerance = self.option(subject, "tolerance", float)
         wheel_contacts = [contact for contact in all_contacts if contact.is_wheel]
-        ground = min(contact.place[2] for contact in wheel_contacts)
-        lowest = min(wheel_contacts, key=lambda item: item.place[2]).link
+        ground = min(contact.lowest_point[2] for contact in wheel_contacts)
+        lowest = min(wheel_contacts, key=lambda item: item.lowest_point[2]).link
         lifted_wheels = _lifted_wheels(subject)
         for contact in all_contacts:
-            gap = contact.place[2] - ground
+            gap = contact.lowest_point[2] - ground
             if abs(gap) > tolerance and lifted_wheels.isdisjoint((contact.link.name, lowest.name)):
                 direction = phrase("above") if gap > 0 else phrase("below")
                 yield self.report(
@@ -165,7 +165,7 @@ class CenterBeyondWheels(Rule):
         all_contacts = subject.once(contacts)
         if robot is None or all_contacts is None or len(all_contacts) < 3:
             return
-        corners = _convex_hull([contact.place[:2] for contact in all_contacts])
+        corners = _convex_hull([contact.lowest_point[:2] for contact in all_contacts])
         center = _center_of_mass(robot, subject.frames)
         if len(corners) < 3 or center is None:
             return

@@ -158,7 +158,7 @@ class UndeclaredArgument(XacroRule):
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
         if facts.is_library:
             return
-        declared_names = set(facts.given)
+        declared_names = set(facts.arguments)
         declared_names |= {definition.name for file in facts.files.values() for definition in file.arguments}
         if any("$" in name for name in declared_names):
             return

@@ -319,7 +319,7 @@ def _used_inside(macro: Element, file: FileFacts) -> tuple[set[str], set[str], b
     is_open = False
     for use in (*file.uses_by_macro.get(id(macro), ()), *file.parameter_uses.get(id(macro), ())):
         names |= use.found.names
-        is_open = is_open or use.found.is_open or bool(use.found.pasted)
+        is_open = is_open or use.found.is_open or bool(use.found.pasted_arguments)
     blocks: set[str] = set()
     for element in macro.walk():
         if element.tag == "xacro:insert_block":
@@ -433,7 +433,7 @@ def _contributes(path: Path, facts: XacroFacts, paths: dict[int, Path]) -> bool:
         return True
     other_files = [file for other_path, file in facts.files.items() if other_path not in nested_files]
     names = {name for file in other_files for name in file.names | file.blocks}
-    called_names = {name for file in other_files for name in file.called}
+    called_names = {name for file in other_files for name in file.called_macros}
     arguments = {name for file in facts.files.values() for name in file.used_arguments}
     for file in nested_files.values():
         if file.has_content or file.is_open or any(call.macro is None for call in file.calls):

@@ -154,31 +154,31 @@ class PersistentLayer(Layer):
     is_clearable = True
 
     def __init__(self) -> None:
-        self.seen = Grid(cells=np.zeros((0, 0), np.uint8), resolution=1.0)
+        self.layer_grid = Grid(cells=np.zeros((0, 0), np.uint8), resolution=1.0)
         self._default = FREE
         self._extra = Window()
 
     def match(self, grid: Grid, default: int) -> None:
         """Move the layer's cells to a new grid; cells outside the old grid get the default cost."""
-        cells = shift_cells(self.seen.cells, self.seen, grid, default)
-        self.seen = Grid(cells=cells, resolution=grid.resolution, x=grid.x, y=grid.y)
+        cells = shift_cells(self.layer_grid.cells, self.layer_grid, grid, default)
+        self.layer_grid = Grid(cells=cells, resolution=grid.resolution, x=grid.x, y=grid.y)
         self._default = default
         self._extra = Window.of(grid)
 
     def reset(self) -> None:
         """Set all cells to the default cost."""
-        self.seen.cells[:] = self._default
-        self._extra = Window.of(self.seen)
+        self.layer_grid.cells[:] = self._default
+        self._extra = Window.of(self.layer_grid)
 
     def clear(self, window: Window, *, outside: bool) -> None:
         """Set the cells in a window, or all cells outside it, to unknown."""
-        kept_cells = self.seen.cells[window.cells].copy()
+        kept_cells = self.layer_grid.cells[window.cells].copy()
         if outside:
-            self.seen.cells[:] = UNKNOWN
-            self.seen.cells[window.cells] = kept_cells
+            self.layer_grid.cells[:] = UNKNOWN
+            self.layer_grid.cells[window.cells] = kept_cells
         else:
-            self.seen.cells[window.cells] = UNKNOWN
-        self._extra = Window.of(self.seen)
+            self.layer_grid.cells[window.cells] = UNKNOWN
+        self._extra = Window.of(self.layer_grid)
 
     def pop_extra_window(self) -> Window:
         """Return the window changed by resizing or clearing since the last call."""

@@ -93,8 +93,8 @@ class ObstacleLayer(PersistentLayer):
     def write(self, grid: Grid, window: Window, moment: UpdateContext) -> None:
         """Combine the layer's cells with the costs of the layers below."""
         if self._footprint_clearing:
-            free_footprint(self.seen.cells, moment, self.seen, window)
-        own_costs, lower_costs = self.seen.cells[window.cells], grid.cells[window.cells]
+            free_footprint(self.layer_grid.cells, moment, self.layer_grid, window)
+        own_costs, lower_costs = self.layer_grid.cells[window.cells], grid.cells[window.cells]
         is_written = own_costs != UNKNOWN
         if self.combination_method == MAXIMUM:
             is_written &= (lower_costs == UNKNOWN) | (lower_costs < own_costs)
@@ -107,14 +107,14 @@ class ObstacleLayer(PersistentLayer):
         start, ends, _ = ray_ends(observation, grid)
         cells, _ = cells_on_lines(start, ends)
         cells = cells[grid.has(cells) & _beyond_min_range(cells, start, observation, grid)]
-        self.seen.cells[cells[:, 0], cells[:, 1]] = FREE
+        self.layer_grid.cells[cells[:, 0], cells[:, 1]] = FREE
         return Window.around(cells, grid)
 
     def mark_points(self, observation: Observation, grid: Grid) -> Window:
         """Mark the cells that contain obstacle points, and return the window around these cells."""
         cells = grid.cells_of(self.obstacles(observation)[:, :2])
         cells = cells[grid.has(cells)]
-        self.seen.cells[cells[:, 0], cells[:, 1]] = LETHAL
+        self.layer_grid.cells[cells[:, 0], cells[:, 1]] = LETHAL
         return Window.around(cells, grid)
 
     def obstacles(self, observation: Observation) -> NDArray[np.float64]:

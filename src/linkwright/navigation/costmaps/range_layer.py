@@ -95,7 +95,7 @@ class RangeLayer(PersistentLayer):
     def clear(self, window: Window, *, outside: bool) -> None:
         """Set the cells in a window, or all cells outside it, to the probability of an unknown cell."""
         super().clear(window, outside=outside)
-        self.seen.cells[self.seen.cells == UNKNOWN] = _UNKNOWN_PROBABILITY
+        self.layer_grid.cells[self.layer_grid.cells == UNKNOWN] = _UNKNOWN_PROBABILITY
 
     def is_current(self, time_ns: int) -> bool:
         """Return whether the latest reading is within the timeout, or no timeout is set."""
@@ -114,7 +114,7 @@ class RangeLayer(PersistentLayer):
 
     def write(self, grid: Grid, window: Window, moment: UpdateContext) -> None:
         """Mark cells above the upper threshold, and free unknown cells below the lower threshold."""
-        probabilities, lower_costs = self.seen.cells[window.cells], grid.cells[window.cells]
+        probabilities, lower_costs = self.layer_grid.cells[window.cells], grid.cells[window.cells]
         lower_costs[(probabilities < self.settings.clear_threshold * _MAX_PROBABILITY) & (lower_costs == UNKNOWN)] = (
             FREE
         )
@@ -140,13 +140,13 @@ class RangeLayer(PersistentLayer):
             )
             hit_cell = grid.cells_of(np.array(hit_position))
             if grid.has(hit_cell):
-                self.seen.cells[hit_cell[0], hit_cell[1]] = _HIT_PROBABILITY
+                self.layer_grid.cells[hit_cell[0], hit_cell[1]] = _HIT_PROBABILITY
         likelihood = self._likelihood(distances, angles / half_angle, reading, grid.resolution)
-        previous = self.seen.cells[window.cells]
+        previous = self.layer_grid.cells[window.cells]
         prior = np.clip(previous / _MAX_PROBABILITY, _MIN_PRIOR, 1.0 - _MIN_PRIOR)
         occupied, free = likelihood * prior, (1.0 - likelihood) * (1.0 - prior)
         posterior = np.round(_MAX_PROBABILITY * occupied / (occupied + free))
-        self.seen.cells[window.cells] = np.where(angles <= half_angle, posterior, previous)
+        self.layer_grid.cells[window.cells] = np.where(angles <= half_angle, posterior, previous)
         return window
 
     def _likelihood(

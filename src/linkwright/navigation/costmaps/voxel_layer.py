@@ -68,8 +68,8 @@ class VoxelLayer(ObstacleLayer):
 
     def match(self, grid: Grid, default: int) -> None:
         """Move the voxels to a new grid; voxels outside the old grid are unknown."""
-        self._occupied = shift_cells(self._occupied, self.seen, grid, 0)
-        self._unknown = shift_cells(self._unknown, self.seen, grid, _ALL_LEVELS)
+        self._occupied = shift_cells(self._occupied, self.layer_grid, grid, 0)
+        self._unknown = shift_cells(self._unknown, self.layer_grid, grid, _ALL_LEVELS)
         super().match(grid, default)
 
     def reset(self) -> None:
@@ -126,4 +126,4 @@ class VoxelLayer(ObstacleLayer):
         rows, columns = cells[:, 0], cells[:, 1]
         occupied, unknown = _BIT_COUNTS[self._occupied[rows, columns]], _BIT_COUNTS[self._unknown[rows, columns]]
         base_costs = np.where(unknown > self._unknown_threshold, UNKNOWN, FREE)
-        self.seen.cells[rows, columns] = np.where(occupied > self._voxels.mark_threshold, LETHAL, base_costs)
+        self.layer_grid.cells[rows, columns] = np.where(occupied > self._voxels.mark_threshold, LETHAL, base_costs)

@@ -42,8 +42,8 @@ class Limits:
         deceleration: the maximum deceleration of each velocity; positive.
     """
 
-    least: Velocity = _MIN_VELOCITY
-    most: Velocity = _MOST
+    min_velocity: Velocity = _MIN_VELOCITY
+    max_velocity: Velocity = _MOST
     acceleration: Velocity = _MAX_ACCELERATION
     deceleration: Velocity = _MAX_ACCELERATION
 
@@ -84,7 +84,7 @@ class SamplingFollower(Follower):
 
     def __init__(self, parameters: SamplingParameters | None = None) -> None:
         self.parameters = parameters or SamplingParameters()
-        self._max_speed = self.parameters.limits.most.x
+        self._max_speed = self.parameters.limits.max_velocity.x
         self._is_turning = False
 
     def begin(self) -> None:
@@ -93,7 +93,7 @@ class SamplingFollower(Follower):
 
     def limit_speed(self, speed: float, *, is_percentage: bool = False) -> None:
         """Limit the speed; see `Follower.limit_speed`."""
-        self._max_speed = limited(self.parameters.limits.most.x, speed, is_percentage=is_percentage)
+        self._max_speed = limited(self.parameters.limits.max_velocity.x, speed, is_percentage=is_percentage)
 
     def velocity(self, situation: Situation) -> Velocity:
         """Return the velocity for the next cycle; see `Follower.velocity`."""
@@ -105,7 +105,7 @@ class SamplingFollower(Follower):
         self._is_turning = abs(angle) > (
             self.parameters.turn_first / 3.0 if self._is_turning else self.parameters.turn_first
         )
-        if self._is_turning and self.parameters.limits.most.y <= 0.0:
+        if self._is_turning and self.parameters.limits.max_velocity.y <= 0.0:
             return self._checked_turn(angle, situation)
         return self._best_velocity(situation)
 
@@ -124,7 +124,7 @@ class SamplingFollower(Follower):
         command = Velocity(
             _brake(current.x, limits.deceleration.x, situation.period),
             _brake(current.y, limits.deceleration.y, situation.period),
-            rotation_speed(angle, current.yaw, situation.period, limits.most.yaw, limits.acceleration.yaw),
+            rotation_speed(angle, current.yaw, situation.period, limits.max_velocity.yaw, limits.acceleration.yaw),
         )
         yaw_rate = abs(command.yaw)
         seconds = min(self.parameters.seconds, abs(angle) / yaw_rate) if yaw_rate > 0.0 else 0.0
@@ -159,11 +159,14 @@ class SamplingFollower(Follower):
     def _candidates(self, situation: Situation) -> NDArray[np.float64]:
         """Return velocities that are reachable within the simulated time, of shape (candidates, 3)."""
         parameters, limits = self.parameters, self.parameters.limits
-        max_velocity = (min(limits.most.x, self._max_speed), limits.most.y, limits.most.yaw)
+        max_velocity = (min(limits.max_velocity.x, self._max_speed), limits.max_velocity.y, limits.max_velocity.yaw)
         axes = []
         for axis, count in enumerate(parameters.samples):
             current, max_change = situation.velocity[axis], limits.acceleration[axis] * parameters.seconds
-            low, high = max(limits.least[axis], current - max_change), min(max_velocity[axis], current + max_change)
+            low, high = (
+                max(limits.min_velocity[axis], current - max_change),
+                min(max_velocity[axis], current + max_change),
+            )
             values = np.linspace(low, max(low, high), count if high > low else 1)
             axes.append(np.append(values, 0.0) if low < 0.0 < high else values)
         mesh = np.meshgrid(*axes, indexing="ij")

@@ -60,7 +60,7 @@ class AmclNode(ManagedNode):
             LinkwrightError: NODE433, a parameter has an invalid value.
         """
         self._settings = read_parameters(self)
-        if self._settings.given.always_reset_initial_pose:
+        if self._settings.parameters.always_reset_initial_pose:
             self._pose = None
         self._map = None
         self._filter = ParticleFilter(self._settings.filter)
@@ -82,8 +82,8 @@ class AmclNode(ManagedNode):
         self._transforms = register(self.create_publisher(TFMessage, "/tf", TF_QOS))
         register(self.create_subscription(pose, "initialpose", self._on_initial_pose, 10))
         grid = get_message("nav_msgs/msg/OccupancyGrid")
-        register(self.create_subscription(grid, settings.given.map_topic, self._on_map, LATCHED_QOS))
-        register(self.create_subscription(scan, settings.given.scan_topic, self._on_scan, SENSOR_DATA_QOS))
+        register(self.create_subscription(grid, settings.parameters.map_topic, self._on_map, LATCHED_QOS))
+        register(self.create_subscription(scan, settings.parameters.scan_topic, self._on_scan, SENSOR_DATA_QOS))
         empty_type = get_service("std_srvs/srv/Empty")
         register(self.create_service(empty_type, "reinitialize_global_localization", self._on_global_localization))
         register(self.create_service(empty_type, "request_nomotion_update", self._on_no_motion))
@@ -118,12 +118,12 @@ class AmclNode(ManagedNode):
             self._work()
 
     def _on_map(self, message: Any) -> None:
-        if self._map is not None and self._settings.given.first_map_only:
+        if self._map is not None and self._settings.parameters.first_map_only:
             return
         try:
             grid = grid_from_message(message)
         except BadGridError as error:
-            self.get_logger().error(f"the message on '{self._settings.given.map_topic}' is not a map: {error}")
+            self.get_logger().error(f"the message on '{self._settings.parameters.map_topic}' is not a map: {error}")
             return
         self.get_logger().info(f"Received a {grid.columns} X {grid.rows} map @ {grid.resolution:.3f} m/pix")
         if message.header.frame_id != self._settings.world:
@@ -138,7 +138,7 @@ class AmclNode(ManagedNode):
             return
         self._last_scan_ns = self.get_clock().now().nanoseconds
         if self._map is None:
-            topic = self.resolve_topic_name(self._settings.given.map_topic)
+            topic = self.resolve_topic_name(self._settings.parameters.map_topic)
             hint = "" if self.count_publishers(topic) else f" No node publishes on '{topic}'."
             self.get_logger().warning(f"Waiting for map....{hint}", throttle_duration_sec=_WARNING_PERIOD)
             return
@@ -151,7 +151,7 @@ class AmclNode(ManagedNode):
             self.get_logger().warning(
                 "No laser scan received (and thus no pose updates have been published) for "
                 f"{silent_seconds:.1f} seconds. "
-                f"Verify that data is being published on the {self._settings.given.scan_topic} topic."
+                f"Verify that data is being published on the {self._settings.parameters.scan_topic} topic."
             )
 
     def _work(self) -> None:
@@ -166,7 +166,9 @@ class AmclNode(ManagedNode):
                 robot_in_odom, _ = self._buffer.lookup(self._settings.odom, self._settings.base, stamp_ns)
                 laser, _ = self._buffer.lookup(self._settings.base, scan.header.frame_id.removeprefix("/"), stamp_ns)
             except TransformException as error:
-                is_late = self.get_clock().now().nanoseconds - stamp_ns > self._settings.given.transform_tolerance * 1e9
+                is_late = (
+                    self.get_clock().now().nanoseconds - stamp_ns > self._settings.parameters.transform_tolerance * 1e9
+                )
                 if not is_late and len(self._waiting) < _MAX_QUEUED_SCANS:
                     return
                 self._waiting.popleft()
@@ -178,7 +180,11 @@ class AmclNode(ManagedNode):
             self._waiting.popleft()
             settings = self._settings
             beams = beams_of_scan(
-                scan, laser, settings.given.max_beams, settings.given.laser_min_range, settings.given.laser_max_range
+                scan,
+                laser,
+                settings.parameters.max_beams,
+                settings.parameters.laser_min_range,
+                settings.parameters.laser_max_range,
             )
             self._update(beams, robot_in_odom, stamp_ns)
 
@@ -196,10 +202,10 @@ class AmclNode(ManagedNode):
             self._odometry = odometry
             skipping = settings.skipping if self._filter.has_converged() else None
             self._filter.update_weights(
-                self._map.likelihoods(settings.given.laser_model_type, self._filter.particles, beams, skipping)
+                self._map.likelihoods(settings.parameters.laser_model_type, self._filter.particles, beams, skipping)
             )
             self._update_count += 1
-            if self._update_count % settings.given.resample_interval == 0:
+            if self._update_count % settings.parameters.resample_interval == 0:
                 grid = self._map
                 self._filter.resample(lambda count: grid.random_poses(count, self._filter.random))
                 must_publish = True
@@ -211,9 +217,9 @@ class AmclNode(ManagedNode):
     def _has_moved(self, odometry: Pose) -> bool:
         previous, settings = self._odometry, self._settings
         return (
-            abs(odometry[0] - previous[0]) > settings.given.update_min_d
-            or abs(odometry[1] - previous[1]) > settings.given.update_min_d
-            or abs(wrap_angle(odometry[2] - previous[2])) > settings.given.update_min_a
+            abs(odometry[0] - previous[0]) > settings.parameters.update_min_d
+            or abs(odometry[1] - previous[1]) > settings.parameters.update_min_d
+            or abs(wrap_angle(odometry[2] - previous[2])) > settings.parameters.update_min_a
         )
 
     def _initialize_particles(self, pose: Pose | None, covariance: NDArray[np.float64]) -> None:
@@ -285,9 +291,9 @@ class AmclNode(ManagedNode):
         self._cloud_publisher.publish(message)
 
     def _broadcast(self, stamp_ns: int) -> None:
-        if self._map_to_odom is None or not self._settings.given.tf_broadcast:
+        if self._map_to_odom is None or not self._settings.parameters.tf_broadcast:
             return
-        valid_until_ns = stamp_ns + round(self._settings.given.transform_tolerance * 1e9)
+        valid_until_ns = stamp_ns + round(self._settings.parameters.transform_tolerance * 1e9)
         frames = (self._settings.world,), (self._settings.odom,)
         self._transforms.publish(
             TFMessage(batch=TransformBatch(*frames, valid_until_ns, np.array([self._map_to_odom])))

@@ -88,7 +88,7 @@ class AmclSettings:
         initial_pose: the initial pose of the robot; None to wait for one.
     """
 
-    given: AmclParameters
+    parameters: AmclParameters
     base: str
     odom: str
     world: str
@@ -127,7 +127,7 @@ def read_parameters(node: Node) -> AmclSettings:
         )
     pose = parameters.initial_pose
     return AmclSettings(
-        given=parameters,
+        parameters=parameters,
         base=parameters.base_frame_id.removeprefix("/"),
         odom=parameters.odom_frame_id.removeprefix("/"),
         world=parameters.global_frame_id.removeprefix("/"),

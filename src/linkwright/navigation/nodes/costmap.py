@@ -405,7 +405,7 @@ def make_costmap(server: Node, graph: Graph, options: NodeOptions, name: str) ->
     """
     ros_arguments = parse(options.arguments)
     rules = ParameterRules()
-    rules.add(options.for_others)
+    rules.add(options.parameters_of_others)
     rules.add(ros_arguments.parameters)
     namespace = join(server.get_namespace(), name)
     remappings = [*ros_arguments.remappings_for(name), *options.remappings]

@@ -83,7 +83,7 @@ def make_layers(shared: Surroundings, names: list[str]) -> None:
     for name in names:
         kind = shared.value(f"{name}.plugin", DEFAULT_LAYERS.get(name, ""))
         if not kind:
-            message = phrase(("parameter '{name}' of '{node}' has no set"), name=f"{name}.plugin", node=node.get_name())
+            message = phrase("parameter '{name}' of '{node}' is not set", name=f"{name}.plugin", node=node.get_name())
             raise LinkwrightError(Diagnostic("NODE431", message))
         factory = factories.get(kind.removeprefix("nav2_costmap_2d::"))
         if factory is None:

@@ -85,8 +85,8 @@ def _dwb_parameters(node: Node, plugin: str) -> SamplingParameters:
         return float(value_of(node, f"{plugin}.{name}", default))
 
     limits = Limits(
-        least=Velocity(value("min_vel_x", 0.0), value("min_vel_y", 0.0), -value("max_vel_theta", 0.0)),
-        most=Velocity(value("max_vel_x", 0.0), value("max_vel_y", 0.0), value("max_vel_theta", 0.0)),
+        min_velocity=Velocity(value("min_vel_x", 0.0), value("min_vel_y", 0.0), -value("max_vel_theta", 0.0)),
+        max_velocity=Velocity(value("max_vel_x", 0.0), value("max_vel_y", 0.0), value("max_vel_theta", 0.0)),
         acceleration=Velocity(value("acc_lim_x", 0.0), value("acc_lim_y", 0.0), value("acc_lim_theta", 0.0)),
         deceleration=Velocity(
             abs(value("decel_lim_x", 0.0)), abs(value("decel_lim_y", 0.0)), abs(value("decel_lim_theta", 0.0))
@@ -104,8 +104,8 @@ def _mppi_parameters(node: Node, plugin: str) -> SamplingParameters:
     is_omnidirectional = value_of(node, f"{plugin}.motion_model", "DiffDrive") == "Omni"
     max_sideways = value("vy_max", 0.5) if is_omnidirectional else 0.0
     limits = Limits(
-        least=Velocity(max(value("vx_min", -0.35), 0.0), -max_sideways, -value("wz_max", 1.9)),
-        most=Velocity(value("vx_max", 0.5), max_sideways, value("wz_max", 1.9)),
+        min_velocity=Velocity(max(value("vx_min", -0.35), 0.0), -max_sideways, -value("wz_max", 1.9)),
+        max_velocity=Velocity(value("vx_max", 0.5), max_sideways, value("wz_max", 1.9)),
         acceleration=Velocity(value("ax_max", 3.0), value("ay_max", 3.0), value("az_max", 3.5)),
         deceleration=Velocity(abs(value("ax_min", -3.0)), abs(value("ay_min", -3.0)), value("az_max", 3.5)),
     )

@@ -18,15 +18,15 @@ class Limits:
         deadband: velocities with a smaller magnitude become 0.
     """
 
-    least: float
-    most: float
+    min_velocity: float
+    max_velocity: float
     acceleration: float
     deceleration: float
     deadband: float = 0.0
 
     def clamped(self, velocity: float) -> float:
         """Return a velocity clamped to the minimum and maximum velocity."""
-        return min(max(velocity, self.least), self.most)
+        return min(max(velocity, self.min_velocity), self.max_velocity)
 
     def change(self, current: float, requested: float, seconds: float) -> float:
         """Return the maximum magnitude of the velocity change in a cycle of some seconds.

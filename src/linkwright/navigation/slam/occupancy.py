@@ -117,7 +117,7 @@ class OccupancyMap:
 
     def _trace_scan(self, scan: PlanarScan, pose: Floats) -> _Trace:
         """Return the counts of the cells along all rays of a scan."""
-        ends = transform_points(pose, np.concatenate((scan.points, scan.passed)))
+        ends = transform_points(pose, np.concatenate((scan.points, scan.free_ends)))
         origin = transform_points(pose, scan.origin[None])[0] / self.resolution
         offsets = ends / self.resolution - origin
         counts = np.maximum(np.ceil(np.abs(offsets).max(axis=1)).astype(np.int64), 1)

@@ -25,7 +25,7 @@ class PlanarScan:
     """
 
     points: Floats
-    passed: Floats
+    free_ends: Floats
     origin: Floats
     stamp_ns: int
 

@@ -55,9 +55,9 @@ def save_graph(mapper: Mapper, path: Path) -> None:
         "odometry": np.array(mapper.odometry).reshape(-1, 3),
         "origins": np.array([scan.origin for scan in scans]).reshape(-1, 2),
         "stamps": np.array([scan.stamp_ns for scan in scans], dtype=np.int64),
-        "counts": np.array([(len(scan.points), len(scan.passed)) for scan in scans], dtype=np.int64).reshape(-1, 2),
+        "counts": np.array([(len(scan.points), len(scan.free_ends)) for scan in scans], dtype=np.int64).reshape(-1, 2),
         "points": np.concatenate(
-            [np.zeros((0, 2)), *(point_array for scan in scans for point_array in (scan.points, scan.passed))]
+            [np.zeros((0, 2)), *(point_array for scan in scans for point_array in (scan.points, scan.free_ends))]
         ),
     }
     file = BytesIO()

@@ -130,7 +130,7 @@ def _read_setup_py(programs: SourcePrograms) -> None:
     facts = read_setup(SourceText(str(path), text))
     for entry in facts.entry_points:
         programs.entry_points[entry.executable] = EntryPoint(entry.module, entry.function or "main")
-    has_computed_entry_points = facts.call and not facts.entry_points_complete
+    has_computed_entry_points = facts.has_call and not facts.entry_points_complete
     if has_computed_entry_points or re.search(r"\bscripts\s*=", text):
         entries, scripts = _run_setup_py(programs.folder)
         for line in entries:

@@ -99,7 +99,7 @@ class CopyRule:
     kind: str
     items: tuple[Argument, ...]
     destination: str | None
-    renamed: str | None = None
+    new_name: str | None = None
     patterns: tuple[PathPattern, ...] = ()
     only_matching: bool = False
     is_optional: bool = False
@@ -191,7 +191,7 @@ class CMakeFile:
     def programs(self) -> dict[str, str]:
         """The installed programs that are files: name -> path relative to the package."""
         return {
-            rule.renamed or PurePosixPath(item.text).name: item.text
+            rule.new_name or PurePosixPath(item.text).name: item.text
             for rule in self.copies
             if rule.kind == "PROGRAMS"
             for item in rule.items
@@ -245,7 +245,7 @@ class CMakeFile:
         if item.startswith(BUILD):
             yield from self._copied_build_files(rule, item, target)
             return
-        target_file = target / (rule.renamed or source.name)
+        target_file = target / (rule.new_name or source.name)
         if share is not None and rule.kind != "DIRECTORY" and target_file == share / source:
             return
         path = package / item
@@ -268,7 +268,7 @@ class CMakeFile:
         target_folder = target if item.endswith("/") else target / PurePosixPath(item).name
         for path, file in self._generated.items():
             if path == item:
-                yield file._replace(destination=str(target / (rule.renamed or PurePosixPath(path).name)))
+                yield file._replace(destination=str(target / (rule.new_name or PurePosixPath(path).name)))
             elif path.startswith(f"{item.rstrip('/')}/"):
                 relative_path = PurePosixPath(path).relative_to(item)
                 if rule.takes(item, relative_path):

@@ -73,7 +73,7 @@ class LaunchFile:
     shares: list[Place] = field(default_factory=list)
     paths: list[SharedFile] = field(default_factory=list)
     imports: list[tuple[str, Span]] = field(default_factory=list)
-    made: frozenset[tuple[str, str]] = frozenset()
+    written_files: frozenset[tuple[str, str]] = frozenset()
 
 
 def is_launch_file(path: str) -> bool:
@@ -108,7 +108,7 @@ def read_launch_file(source: SourceText, path: str) -> LaunchFile:
         if expression is not None:
             facts.shares.append(expression)
     written_paths = (python.value(node) for node in _written_paths(python))
-    facts.made = frozenset(
+    facts.written_files = frozenset(
         (share_path.package, share_path.rest.strip("/"))
         for share_path in written_paths
         if isinstance(share_path, SharePath)

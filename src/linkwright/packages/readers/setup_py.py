@@ -80,7 +80,7 @@ class SetupFile:
         self.source = source
         self.tree: ast.Module | None = None
         self.error: SyntaxProblem | None = None
-        self.call = False
+        self.has_call = False
         self.name: tuple[str, Span] | None = None
         self.installed: list[DataFile] = []
         self.data_files_span: Span | None = None
@@ -120,7 +120,7 @@ def read_setup(source: SourceText) -> SetupFile:
     call = next(python.calls("setup"), None)
     if call is None:
         return facts
-    facts.call = True
+    facts.has_call = True
     if any(keyword.arg is None for keyword in call.keywords):
         facts.is_complete = facts.entry_points_complete = False
     name = argument_of(call, "name")

@@ -107,7 +107,7 @@ class EditingFeature(PageFeature):
                 )
         plan = await asyncio.to_thread(_plan_request, description, message)
         self._previewed_plans[page] = message.number, plan
-        page.send(editing.EditPreview(message.number, files_of(plan), list(plan.also), None))
+        page.send(editing.EditPreview(message.number, files_of(plan), list(plan.side_effects), None))
 
     def _editable_parts(self, page: Page, message: editing.AskEditableParts) -> editing.EditableParts:
         robot, description = self._robot_and_description(page, message.display)

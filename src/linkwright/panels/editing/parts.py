@@ -37,7 +37,7 @@ def request_of(message: PreviewEdit) -> EditRequest:
 
 def files_of(plan: EditPlan) -> list[EditedFile]:
     """Return the files that an edit changes, each as the lines of a unified diff without its header."""
-    return [EditedFile(path, list(_diff(plan.before[path], text))) for path, text in plan.texts.items()]
+    return [EditedFile(path, list(_diff(plan.old_texts[path], text))) for path, text in plan.texts.items()]
 
 
 def _diff(before: str, after: str) -> Iterator[str]:

@@ -232,7 +232,7 @@ class _RobotWriter:
         try:
             return read_parts(path, resolver=_NeighbourFiles(self._files, url))
         except BadMeshError as error:
-            raise _unreadable_mesh_error(link, display_path(path), error.why) from None
+            raise _unreadable_mesh_error(link, display_path(path), error.reason) from None
 
     def _add_geometry(self, key: tuple[Any, ...], part: MeshPart) -> dict[str, Any]:
         if key not in self._geometries:
@@ -309,7 +309,7 @@ def _look(shape: Shape, part: MeshPart, texture: bytes | None) -> _Appearance:
     """
     is_mesh = shape.kind == "mesh"
     alpha = shape.color[3] if shape.color else 1.0
-    material = part.own
+    material = part.file_material
     if material is None:
         is_grey = is_mesh and not (shape.format or "").startswith("stl")
         default_color = (UNCOLOURED,) * 3 if is_grey else _DEFAULT_COLOR

@@ -98,9 +98,9 @@ class _Pad:
             self._set_state(TeleopState(target.topic, "", 0, error.diagnostics[0].message))
             return
         topic = self._topic
-        if topic.foreign is not None:
+        if topic.foreign_type is not None:
             self._cancel_stop()
-            self._set_state(TeleopState(topic.name, "", 0, f"the topic carries {topic.foreign}"))
+            self._set_state(TeleopState(topic.name, "", 0, f"the topic carries {topic.foreign_type}"))
             return
         self._set_state(TeleopState(topic.name, topic.type_name.rpartition("/")[2], subscription_count, None))
 

@@ -62,7 +62,7 @@ def set_text(element: Element, value: str) -> list[Replacement]:
     tag = find_start_tag(element)
     assert tag is not None, "its content is known"
     if tag.is_whole:
-        return [Replacement(tag.room, tag.end, f">{escaped(value)}</{element.tag}>")]
+        return [Replacement(tag.insertion_offset, tag.end, f">{escaped(value)}</{element.tag}>")]
     old = text[start:end]
     if "<" not in old and old.strip():
         start, end = start + len(old) - len(old.lstrip()), start + len(old.rstrip())
@@ -139,7 +139,7 @@ def set_attribute(element: Element, name: str, value: str) -> list[Replacement]:
         range_of(element)
         tag = find_start_tag(element)
         assert tag is not None, "its range is known"
-        return [Replacement(tag.room, tag.room, f' {name}="{escaped(value)}"')]
+        return [Replacement(tag.insertion_offset, tag.insertion_offset, f' {name}="{escaped(value)}"')]
     escaped_value = escaped(value)
     if text[value_range[0] - 1] == "'":
         escaped_value = escaped_value.replace("&quot;", '"').replace("'", "&apos;")

@@ -65,8 +65,8 @@ class _Drag:
     """
 
     model: str
-    start: Any = None
-    target: Sequence[float] | None = None
+    initial_state: Any = None
+    pending_offset: Sequence[float] | None = None
     is_calling: bool = False
 
 
@@ -244,24 +244,24 @@ class SimulationFeature(PageFeature):
             )
         known = self._drags.get(page)
         if known is not None and known.model == message.model and _is_vector(message.offset):
-            known.target = message.offset
+            known.pending_offset = message.offset
             self._put(page, known)
 
     def _on_drag_state(self, page: Page, drag: _Drag, response: Any) -> None:
         if response is not None and response.success:
-            drag.start = response.state
+            drag.initial_state = response.state
             self._put(page, drag)
 
     def _put(self, page: Page, drag: _Drag) -> None:
         """Send the newest pose, or wait until the simulation has answered the previous request."""
-        if drag.start is None or drag.target is None or drag.is_calling:
+        if drag.initial_state is None or drag.pending_offset is None or drag.is_calling:
             return
-        start = drag.start.pose.position
+        start = drag.initial_state.pose.position
         drag.is_calling = True
-        offset, drag.target = drag.target, None
-        state = type(drag.start)(name=drag.model, reference_frame="world")
+        offset, drag.pending_offset = drag.pending_offset, None
+        state = type(drag.initial_state)(name=drag.model, reference_frame="world")
         state.pose = _pose([start.x + offset[0], start.y + offset[1], start.z + offset[2]])
-        state.pose.orientation = drag.start.pose.orientation
+        state.pose.orientation = drag.initial_state.pose.orientation
 
         def put(_: Any) -> None:
             drag.is_calling = False

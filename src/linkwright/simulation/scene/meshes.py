@@ -185,12 +185,12 @@ class MeshLibrary:
         return [self._add_geom(body, pose, name) for name in self._assets[key]]
 
     def _add_material(self, mesh: str, part: MeshPart) -> None:
-        if part.own is None:
+        if part.file_material is None:
             return
         material = self.spec.add_material(name=f"{mesh} look")
-        material.rgba = [*part.own.color, 1.0]
-        if part.own.image is not None and part.triangles.coordinates is not None:
-            self._add_texture(material, part.own.image)
+        material.rgba = [*part.file_material.color, 1.0]
+        if part.file_material.image is not None and part.triangles.coordinates is not None:
+            self._add_texture(material, part.file_material.image)
 
     def _add_texture(self, material: Any, image: bytes) -> None:
         """Add a PNG texture to a material of MuJoCo.
@@ -247,7 +247,7 @@ class MeshLibrary:
         try:
             parts = read_parts(path, resolver=file_resolver(str(path)))
         except BadMeshError as error:
-            raise unreadable(path, error.why) from None
+            raise unreadable(path, error.reason) from None
         _check_triangle_count(path, sum(len(part.triangles.indices) // 3 for part in parts))
         if shape.submesh is None:
             return parts

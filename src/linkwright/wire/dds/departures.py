@@ -43,7 +43,7 @@ class _MissingWriter:
 
     endpoint: RemoteEndpoint
     node: NodeIdentity
-    due: float | None = None
+    deadline: float | None = None
 
 
 class Departures:
@@ -102,9 +102,9 @@ class Departures:
     def _review_missing_writers(self) -> None:
         now, undecided = self._now(), []
         for missing in self._gone:
-            if missing.due is None:
-                missing.due = now + WITHDRAWAL_TIMEOUT_S
-            if now < missing.due:
+            if missing.deadline is None:
+                missing.deadline = now + WITHDRAWAL_TIMEOUT_S
+            if now < missing.deadline:
                 undecided.append(missing)
             else:
                 self._report(missing.endpoint, missing.node)

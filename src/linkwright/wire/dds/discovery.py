@@ -219,7 +219,7 @@ class Discovery:
             return topic, self._participant.create_writer(topic, qos)
 
     def _record_gid_size(self, writer: RemoteEndpoint) -> None:
-        self._gid_sizes[writer.participant] = GID_SIZE if "typehash" in writer.facts else OLD_GID_SIZE
+        self._gid_sizes[writer.participant] = GID_SIZE if "typehash" in writer.user_data else OLD_GID_SIZE
 
     def _forget_gid_size(self, participant: bytes) -> None:
         self._gid_sizes.pop(participant, None)

@@ -56,8 +56,8 @@ class EarlyRequest:
 
     writer: bytes
     body: bytes
-    written: int
-    came: float
+    written_ns: int
+    arrived_at: float
 
 
 class FastServer:
@@ -168,7 +168,8 @@ class FastServer:
             self._early_requests = [
                 early_request
                 for early_request in early_requests
-                if early_request.writer not in settled_writers and now < early_request.came + _EARLY_REQUEST_TIMEOUT_S
+                if early_request.writer not in settled_writers
+                and now < early_request.arrived_at + _EARLY_REQUEST_TIMEOUT_S
             ]
         for writer in settled_writers:
             for number, request in self._assign_numbers(
@@ -186,13 +187,13 @@ class FastServer:
                 early_requests = [
                     early_request
                     for early_request in early_requests
-                    if early_request.written < written_first - _TIME_TOLERANCE_NS
+                    if early_request.written_ns < written_first - _TIME_TOLERANCE_NS
                 ]
             numbered = list(
                 zip(range(last_number - len(early_requests) + 1, last_number + 1), early_requests, strict=True)
             )
             numbered_requests = self._numbered_requests.setdefault(writer, deque(maxlen=_MAX_REMEMBERED))
-            numbered_requests.extend((number, request.written) for number, request in numbered)
+            numbered_requests.extend((number, request.written_ns) for number, request in numbered)
         return numbered
 
 

@@ -29,7 +29,7 @@ class OpenDomain:
     def __init__(self, number: int, handle: int, confinement: socket | None = None) -> None:
         self.number = number
         self.handle = handle
-        self.members = confinement
+        self.confinement = confinement
         self.users = 0
         self.descriptions = WireTypes()
         self.types = TopicTypes()
@@ -62,8 +62,8 @@ def close_domain(domain: OpenDomain) -> None:
             del _opened[domain.number]
             if load().dds_delete(domain.handle) >= 0:
                 domain.types.free()
-            if domain.members is not None:
-                domain.members.close()
+            if domain.confinement is not None:
+                domain.confinement.close()
 
 
 def _create_domain(settings: Settings) -> OpenDomain:

@@ -111,7 +111,7 @@ class RemoteEndpoint:
     topic: str
     type_name: str
     qos: QoSProfile
-    facts: dict[str, str] = field(default_factory=dict)
+    user_data: dict[str, str] = field(default_factory=dict)
 
     @property
     def name(self) -> RosName | None:
@@ -148,7 +148,7 @@ class RemoteEndpoint:
         # rmw_fastrtps announces the hash of the request or response type. Other implementations announce the hash of
         # the service type.
         announces_hash = name.role is Role.TOPIC or not self.is_fast
-        type_hash = self.facts.get("typehash", "") if announces_hash else ""
+        type_hash = self.user_data.get("typehash", "") if announces_hash else ""
         return EndpointInfo(endpoint_kind, node, name.name, type_name, self.qos, self.guid, type_hash, host=host)
 
 

@@ -296,8 +296,8 @@ def _have_same_owner(a: RemoteEndpoint | None, b: RemoteEndpoint | None, key: st
     """
     if a is None or b is None:
         return False
-    if key in a.facts or key in b.facts:
-        return a.facts.get(key) == b.facts.get(key)
+    if key in a.user_data or key in b.user_data:
+        return a.user_data.get(key) == b.user_data.get(key)
     return a.participant == b.participant
 
 

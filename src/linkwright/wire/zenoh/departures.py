@@ -41,7 +41,7 @@ class _MissingPublisher:
 
     key: str
     token: Token
-    due: float
+    deadline: float
 
 
 class Departures:
@@ -109,8 +109,8 @@ class Departures:
             The seconds until the next call, or None if no call is needed.
         """
         now = self._now()
-        expired = [missing for missing in self._gone if missing.due <= now]
-        self._gone = [gone for gone in self._gone if gone.due > now]
+        expired = [missing for missing in self._gone if missing.deadline <= now]
+        self._gone = [gone for gone in self._gone if gone.deadline > now]
         for gone in expired:
             info = gone.token.described() if self._is_lost(gone) else None
             if info is not None:
@@ -118,7 +118,7 @@ class Departures:
                     callback(info)
         if not self._gone:
             self._forget(now)
-        return max(self._gone[0].due - now, 0.0) if self._gone else None
+        return max(self._gone[0].deadline - now, 0.0) if self._gone else None
 
     def _is_lost(self, missing: _MissingPublisher) -> bool:
         token = missing.token

@@ -115,7 +115,7 @@ class Compiler:
         self._shift = shift
         self._is_plain = source.isascii() and "\n" not in source and "\r" not in source
         self._depth = 0
-        self.changes = False
+        self.may_change_values = False
 
     def compile(self, node: ast.AST) -> Closure:
         """Return the closure for a node.
@@ -237,7 +237,7 @@ class Compiler:
     def _namedexpr(self, node: ast.NamedExpr) -> Closure:
         name, value = node.target.id, self.compile(node.value)
         self.name(name, 0)
-        self.changes = True
+        self.may_change_values = True
 
         def assign(env: Environment) -> Any:
             result = value(env)
@@ -390,7 +390,7 @@ class Compiler:
         argument_closures = [closure for _, closure in positional]
         start, end = self._place(node)
         if isinstance(node.func, ast.Attribute) and node.func.attr in _MUTATING_METHODS:
-            self.changes = True
+            self.may_change_values = True
 
         def call_function(env: Environment) -> Any:
             callee = function(env)

@@ -52,7 +52,7 @@ class Expression:
             self.evaluate: Closure = compiler.name(stripped, 0)
         else:
             self.evaluate = _exhaust_iterator(compiler.compile(_parse(source, stripped).body), source)
-        self.changes = compiler.changes
+        self.changes = compiler.may_change_values
 
 
 _KEYWORDS = frozenset(

@@ -83,9 +83,9 @@ class Context(Protocol):
     limits: Limits
     budget: Budget
     file: str
-    place: Element | Text | None
-    attribute: str | None
-    resolving: list[str]
+    current_node: Element | Text | None
+    current_attribute: str | None
+    property_stack: list[str]
 
     @property
     def working_directory(self) -> str:
@@ -227,7 +227,7 @@ class Scope:
             scope = scope.parent
 
     def _resolve(self, name: str, lazy: Lazy) -> Any:
-        property_stack = self.session.resolving
+        property_stack = self.session.property_stack
         if lazy.resolving:
             cycle = " -> ".join([*property_stack[property_stack.index(name) :], name])
             hint = phrase('write lazy_eval="false" in the definition of one of them')
@@ -241,9 +241,9 @@ class Scope:
                 "XAC601", phrase("more than {count} properties depend on one another", count=len(property_stack))
             )
         session = self.session
-        outer_location = session.place, session.attribute
+        outer_location = session.current_node, session.current_attribute
         if lazy.element is not None:
-            session.place, session.attribute = lazy.element, lazy.attribute
+            session.current_node, session.current_attribute = lazy.element, lazy.attribute
         lazy.resolving = True
         property_stack.append(name)
         try:
@@ -251,11 +251,11 @@ class Scope:
         except Fault as fault:
             if lazy.element is not None:
                 fault.place_in_attribute(lazy.element, lazy.attribute)
-            fault.passing = phrase("the property '{name}' is used here", name=name)
+            fault.next_note = phrase("the property '{name}' is used here", name=name)
             raise
         finally:
             lazy.resolving = False
-            session.place, session.attribute = outer_location
+            session.current_node, session.current_attribute = outer_location
             property_stack.pop()
         self.values[name] = value
         return value

@@ -191,7 +191,7 @@ class _Call:
     def _default(self, macro: Macro, parameter: Parameter) -> Any:
         caller, node = self._site.scope, self._node
         session = self._expander.session
-        session.place, session.attribute = macro.body, "params"
+        session.current_node, session.current_attribute = macro.body, "params"
         try:
             if parameter.forward and parameter.name in caller:
                 return caller.lookup(parameter.name)
@@ -214,7 +214,7 @@ class _Call:
                 if fault.start is None and parameter.default is not None:
                     fault.start, fault.end = 0, len(parameter.default)
                 fault.place_in_attribute(macro.body, "params", parameter.default_start)
-                fault.passing = phrase("the default of '{name}' is used by this call", name=parameter.name)
+                fault.next_note = phrase("the default of '{name}' is used by this call", name=parameter.name)
                 fault.place_at(node)
             self._expander.fail(fault)
 

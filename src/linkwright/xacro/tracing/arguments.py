@@ -104,7 +104,7 @@ class _Session(TracedSession):
         self.documents: dict[str, Document] = {}
         self.declared: dict[str, Element] = {}
         self.missing: dict[str, None] = {}
-        self.asked: dict[str, None] = {}
+        self.used_names: dict[str, None] = {}
         self._defaults: dict[str, str] = {}
 
     def read(self, path: str) -> Document:
@@ -124,7 +124,7 @@ class _Session(TracedSession):
 
     def argument(self, name: str) -> str:
         """Return the value of an argument, or a substitute if it is missing."""
-        self.asked[name] = None
+        self.used_names[name] = None
         if name not in self.arguments:
             self.missing[name] = None
             return self._defaults.get(name, "")
@@ -177,7 +177,7 @@ class _Findings:
 
     def unused(self) -> tuple[Diagnostic, ...]:
         """Return a warning for each passed argument that no file declares or uses."""
-        known_names = {**self.uses, **self.elsewhere, **self.session.declared, **self.session.asked}
+        known_names = {**self.uses, **self.elsewhere, **self.session.declared, **self.session.used_names}
         return tuple(
             Diagnostic(
                 "XAC215",
@@ -204,7 +204,7 @@ class _Findings:
             default=default,
             span=element.attribute_span("name"),
             required=not is_passed and (name in missing_names or default is None),
-            used=name in self.uses or name in self.session.asked,
+            used=name in self.uses or name in self.session.used_names,
             value=None if name in missing_names else value,
             given=is_passed,
         )

@@ -45,7 +45,7 @@ class _Log:
             session = expander.session
             existing_values, scope.values = scope.values, _Table(session, self._put, depth - 1)
             if session.frame is not None:
-                session.place = session.frame.site  # the location in the log of parameters that already exist
+                session.current_node = session.frame.site  # the location in the log of parameters that already exist
             for name, value in existing_values.items():
                 scope.values[name] = value
         if not (isinstance(target, Element) and target.tag == "xacro:macro"):
@@ -91,7 +91,7 @@ class _Table(dict[str, Any]):
             text = f"<{value.tag}>"
         else:
             text = value.text if isinstance(value, Lazy) else shown(value)
-        node = self._session.place
+        node = self._session.current_node
         span = node.span() if isinstance(node, Element) else None
         if span is None and node is not None and node.source is not None:
             span = node.source.span(node.offset)

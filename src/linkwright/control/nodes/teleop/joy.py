@@ -161,7 +161,7 @@ class JoyNode(SingleNode):
                 publish_soon |= self._update_axis(event)
             elif self._update_button(event):
                 # When it is opened, the device reports all axes and buttons; one message contains all these events.
-                publish_now, publish_soon = publish_now or not event.initial, publish_soon or event.initial
+                publish_now, publish_soon = publish_now or not event.is_initial, publish_soon or event.is_initial
         if publish_now or (publish_soon and self._settings.coalesce == 0.0):
             self._publish()
         elif publish_soon and self._soon.is_canceled():
@@ -171,7 +171,7 @@ class JoyNode(SingleNode):
         axes = self._axes
         axes += [0.0] * (event.number + 1 - len(axes))
         old_value, axes[event.number] = axes[event.number], deflection(event.value, self._settings.deadzone)
-        return event.initial or old_value != axes[event.number]
+        return event.is_initial or old_value != axes[event.number]
 
     def _update_button(self, event: JoystickEvent) -> bool:
         buttons = self._buttons
@@ -181,7 +181,7 @@ class JoyNode(SingleNode):
             buttons[event.number] = int(event.value != 0)
         elif event.value:
             buttons[event.number] = 1 - old_value
-        return event.initial or old_value != buttons[event.number]
+        return event.is_initial or old_value != buttons[event.number]
 
     def _publish(self) -> None:
         self._soon.cancel()

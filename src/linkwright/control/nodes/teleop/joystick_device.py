@@ -38,7 +38,7 @@ class JoystickEvent(NamedTuple):
     is_axis: bool
     number: int
     value: int
-    initial: bool = False
+    is_initial: bool = False
 
 
 class JoystickDevice:

@@ -37,7 +37,7 @@ def parse_command_line(text: str, parser: Any) -> list[list[Substitution]]:
         )
         raise error_at(substitutions[-1].place, "LAUNCH118", message, ros_error=ros_error)
     splitter.end_argument()
-    return splitter.words
+    return splitter.arguments
 
 
 class _ArgumentSplitter:
@@ -49,7 +49,7 @@ class _ArgumentSplitter:
     """
 
     def __init__(self) -> None:
-        self.words: list[list[Substitution]] = []
+        self.arguments: list[list[Substitution]] = []
         self.quote = ""
         self._argument: list[Substitution] = []
         self._text = ""
@@ -84,7 +84,7 @@ class _ArgumentSplitter:
         """End the current argument, if there is one."""
         self._end_text()
         if self._has_begun:
-            self.words.append(self._argument or [TextSubstitution(text="")])
+            self.arguments.append(self._argument or [TextSubstitution(text="")])
         self._argument, self._has_begun = [], False
 
     def _add(self, text: str) -> None:

@@ -38,7 +38,7 @@ class Scope:
         entries: name -> the keys and values in assignments ``name[key] = value``.
     """
 
-    around: Scope | None = None
+    enclosing: Scope | None = None
     function: Function | None = None
     names: dict[str, list[Binding]] = field(default_factory=dict)
     entries: dict[str, list[tuple[ast.expr, ast.expr]]] = field(default_factory=dict)
@@ -49,7 +49,7 @@ class Scope:
         while scope is not None:
             if name in scope.names:
                 return scope, scope.names[name]
-            scope = scope.around
+            scope = scope.enclosing
         return None
 
 

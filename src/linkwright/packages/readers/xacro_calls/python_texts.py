@@ -315,7 +315,7 @@ class PythonTexts:
         """Return the value of a function's parameter, from pytest or from calls in the same file."""
         function = scope.function
         assert function is not None
-        outer_scope = scope.around or scope
+        outer_scope = scope.enclosing or scope
         for decorator in function.decorator_list:
             if isinstance(decorator, ast.Call) and called_name(decorator).endswith("parametrize") and decorator.args:
                 names = self._parametrized_names(decorator.args[0], outer_scope)

@@ -39,7 +39,7 @@ class Open:
 
     choice: str
     column: int = 0
-    is_part: bool = False
+    starts_component: bool = False
 
 
 Text = tuple[Union[str, Share, Open], ...]  # noqa: UP007 - Python 3.10 cannot join a name that is not yet there
@@ -71,7 +71,7 @@ class Selection:
     """
 
     rows: Mapping[str, int] = field(default_factory=dict)
-    given: Mapping[str, str] = field(default_factory=dict)
+    fixed_texts: Mapping[str, str] = field(default_factory=dict)
 
 
 def literal(text: str) -> Text:
@@ -98,7 +98,7 @@ def joined_path(parts: Sequence[Text]) -> Text:
         if part and not (isinstance(path[-1], str) and path[-1].endswith("/")):
             path = (*path, "/")
         if isinstance(first, Open) and first != UNKNOWN:
-            part = (replace(first, is_part=True), *part[1:])
+            part = (replace(first, starts_component=True), *part[1:])
         path = (*path, *part)
     return path
 
@@ -120,7 +120,7 @@ def resolve(text: Text, choices: Mapping[str, Choice], selection: Selection, dep
         if value is None and content != ():
             return None
         string = share_mark(value or "") if isinstance(piece, Share) else value or ""
-        if isinstance(piece, Open) and piece.is_part and string.startswith(("/", _SHARE_DELIMITER)):
+        if isinstance(piece, Open) and piece.starts_component and string.startswith(("/", _SHARE_DELIMITER)):
             strings.clear()
         strings.append(string)
     return "".join(strings)
@@ -143,8 +143,8 @@ def split_mark(path: str) -> tuple[str | None, str]:
 
 
 def _selected_text(place: Open, choices: Mapping[str, Choice], selection: Selection) -> Text | str | None:
-    if place.choice in selection.given:
-        return selection.given[place.choice]
+    if place.choice in selection.fixed_texts:
+        return selection.fixed_texts[place.choice]
     choice = choices.get(place.choice)
     if choice is None or not choice.rows:
         return None
@@ -187,13 +187,13 @@ def variations(
     First, each row of each choice is selected, one choice at a time. Then pairs of rows follow, which might not occur
     together. Larger combinations are omitted, because there would be too many.
     """
-    names = dict.fromkeys(name for text in texts for name in choices_in(text, choices, start.given))
+    names = dict.fromkeys(name for text in texts for name in choices_in(text, choices, start.fixed_texts))
     unselected_names = [name for name in names if name not in start.rows and len(choices[name].rows) > 1]
     is_certain = all(choices[name].is_certain for name in unselected_names)
     yield start, is_certain
     alternatives = [(name, row) for name in unselected_names for row in range(1, len(choices[name].rows))]
     for name, row in alternatives[:MAX_VARIATIONS]:
-        yield Selection({**start.rows, name: row}, start.given), is_certain
+        yield Selection({**start.rows, name: row}, start.fixed_texts), is_certain
     pairs = ((one, other) for one, other in combinations(alternatives, 2) if one[0] != other[0])
     for pair in islice(pairs, MAX_VARIATIONS):
-        yield Selection({**start.rows, **dict(pair)}, start.given), False
+        yield Selection({**start.rows, **dict(pair)}, start.fixed_texts), False
