@@ -163,11 +163,11 @@ def _dispatch(words: list[str], program: str) -> int:
     if name not in COMMANDS and name not in help_texts():
         return _report_unknown(name, _OPTIONS if name.startswith("-") else help_texts(), program or PROGRAM)
     module = verb(name)
-    in_order = workbench is not None and name in workbench.IN_ORDER
+    in_order = workbench is not None and name in workbench.ORDERED_COMMANDS
     parsed = _parse_without_options(module, words[1:]) or _parse(name, module, words, program, in_order=in_order)
     if isinstance(parsed, int):
         return parsed
-    if workbench is None or name not in workbench.WITH_A_LOOP:
+    if workbench is None or name not in workbench.EVENT_LOOP_COMMANDS:
         raise_interrupts()
     return module.run(parsed)
 
