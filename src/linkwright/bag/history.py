@@ -349,8 +349,7 @@ class History:
             at_ns: the reception time; None for the current time. A time before that of the newest message is replaced
                     by the newest message's time.
             content: the content of the message (see `stillness`), so that a message that only repeats earlier ones
-                needs
-                    no additional memory; None if the content is not compared.
+                needs no additional memory; None if the content is not compared.
         """
         size = _stored_size(data)
         if size > self.most_bytes:

@@ -39,9 +39,8 @@ class StateLookup:
         """Return the last message of each topic up to a time.
 
         For ``/tf``, the result has the messages of the last two seconds, or if there are none, of the two seconds up
-        to the
-        last message; for ``/tf_static``, all messages. Topics with these names in a namespace are
-        treated in the same way.
+        to the last message; for ``/tf_static``, all messages. Topics with these names in a namespace are treated in the
+        same way.
 
         Args:
             topics: the names of the topics.

@@ -140,9 +140,8 @@ class Playback:
         """Jump to another time in the next iteration of the event loop.
 
         Of several pending seeks, only the last one takes effect. The new time is published first, and the messages of
-        the
-        new state one iteration of the event loop later, because subscribers drop their state when the
-        clock goes back.
+        the new state one iteration of the event loop later, because subscribers drop their state when the clock goes
+        back.
         """
         is_pending = self._target_ns is not None
         self._target_ns = min(self.end_ns, max(self.start_ns, stamp_ns))

@@ -55,8 +55,7 @@ class BagWriter:
         max_size: the size in bytes after which a new file is begun; 0 for no limit.
         max_seconds: the duration in seconds after which a new file is begun; 0 for no limit.
         snapshot_size: the size in bytes of a buffer for the latest messages, which only `take_snapshot` writes; 0 to
-            write
-                all messages at once.
+            write all messages at once.
         custom_data: additional entries of the metadata.
 
     Raises:

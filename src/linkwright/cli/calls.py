@@ -36,7 +36,7 @@ async def call(
         service_name: the absolute name.
         request: the request message.
         timeout: the time to wait for the response, in seconds; None for no limit.
-        longer: the time to wait for the service in addition to `SERVICE_TIMEOUT`, in seconds; a line on standard error
+        longer: the time to wait for the service in addition to `APPEARS_WITHIN`, in seconds; a line on standard error
             announces this wait.
 
     Raises:

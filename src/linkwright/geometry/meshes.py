@@ -23,7 +23,7 @@ from linkwright.geometry.mass import MassProperties
 from linkwright.geometry.mesh_files import MESH_ENDINGS, BadMeshError, file_resolver, placed_meshes
 from linkwright.geometry.outlines import COLLADA_PADDING
 from linkwright.geometry.polyhedron import Faces, is_closed, merged, polyhedron_properties
-from linkwright.geometry.shapes import FARTHEST, Bounds
+from linkwright.geometry.shapes import MAX_COORDINATE, Bounds
 from linkwright.geometry.single import Vector3
 from linkwright.loading.lean_typing import Any
 
@@ -142,7 +142,7 @@ def read_mesh(path: Path) -> TriangleMesh:
         raise missing_extra("INR104", error) from None
     except BadMeshError as error:
         raise unreadable(path, error.reason) from None
-    if not np.abs(mesh.vertices).max() <= FARTHEST:
+    if not np.abs(mesh.vertices).max() <= MAX_COORDINATE:
         raise unreadable(path, phrase("a coordinate is out of range"))
     return mesh
 

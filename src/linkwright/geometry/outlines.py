@@ -14,7 +14,7 @@ from itertools import chain, pairwise
 from math import isfinite
 from struct import iter_unpack
 
-from linkwright.geometry.shapes import FARTHEST, Bounds
+from linkwright.geometry.shapes import MAX_COORDINATE, Bounds
 from linkwright.geometry.single import Vector3
 from linkwright.loading.lean_typing import Protocol
 
@@ -31,7 +31,7 @@ CORNERS = (8, 9, 10, 12, 13, 14, 16, 17, 18)
 
 COLLADA_PADDING = b" \t\r\n\0"
 """The bytes that exporters leave around the XML of a COLLADA file, and that other readers skip."""
-_MOST_TRIANGLES = 20_000
+_MAX_TRIANGLES = 20_000
 """The maximum number of triangles, because a small COLLADA file may place its meshes any number of times."""
 
 _Triangle = tuple[int, int, int]
@@ -183,7 +183,7 @@ def _obj(data: bytes) -> SmallMesh | None:
 def _collada(data: bytes) -> SmallMesh | None:
     from linkwright.geometry.collada_lists import read_triangles  # Imports an XML parser.
 
-    triangles = read_triangles(data.strip(COLLADA_PADDING), _MOST_TRIANGLES)
+    triangles = read_triangles(data.strip(COLLADA_PADDING), _MAX_TRIANGLES)
     return None if triangles is None else _mesh(*triangles)
 
 
@@ -193,7 +193,7 @@ def _points(numbers: list[float]) -> list[Vector3]:
 
 def _mesh(corners: list[Vector3], faces: list[_Triangle]) -> SmallMesh | None:
     numbers = list(chain.from_iterable(corners))
-    if not all(map(isfinite, numbers)) or max(map(abs, numbers)) > FARTHEST:
+    if not all(map(isfinite, numbers)) or max(map(abs, numbers)) > MAX_COORDINATE:
         return None
     return SmallMesh(corners, faces)
 

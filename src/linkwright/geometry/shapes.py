@@ -139,7 +139,7 @@ def _vector(values: tuple[float, ...]) -> Vector3:
     return values[0], values[1], values[2]
 
 
-FARTHEST = 1e9
+MAX_COORDINATE = 1e9
 """Lengths beyond this, in m, are mistakes. They are not used in computations, so that nothing overflows."""
 
 

@@ -116,7 +116,7 @@ def rpy_from_quaternion(quaternion: Quaternion) -> Vector3:
 def normalized(x: float, y: float, z: float, w: float, *, least: float = 0.0) -> Quaternion:
     """Scale a quaternion to length 1.
 
-    The result is the identity if the squared length is 0, or less than `min_squared`.
+    The result is the identity if the squared length is 0, or less than `least`.
     """
     squared = x * x + y * y + z * z + w * w
     if squared == 0.0 or squared < least:

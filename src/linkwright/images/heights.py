@@ -12,7 +12,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, mi
 from linkwright.geometry.arrays import Array
 from linkwright.images.elevation import read_elevation
 
-_MOST = 1025
+_MAX_ROWS = 1025
 """The maximum number of heights along a side; of a larger image only every n-th row and column is used."""
 
 
@@ -51,7 +51,7 @@ def read_heights(path: Path) -> Heights:
         except (OSError, ValueError):
             message = phrase("cannot read the image '{path}': {why}", path=display_path(path), why=str(error))
             raise LinkwrightError(Diagnostic("SIM113", message)) from None
-    stride = -(-max(values.shape) // _MOST)
+    stride = -(-max(values.shape) // _MAX_ROWS)
     values = values[::-stride, ::stride]
     if mode == "F":
         minimum, maximum = float(np.nanmin(values)), float(np.nanmax(values))

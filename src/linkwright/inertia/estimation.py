@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from linkwright.diagnostics import LinkwrightError, Phrase, phrase, term
 from linkwright.geometry.mass import MassProperties, combine
-from linkwright.geometry.shapes import FARTHEST, shape_bounds
+from linkwright.geometry.shapes import MAX_COORDINATE, shape_bounds
 from linkwright.geometry.solids import shape_properties
 from linkwright.inertia.inertial import has_mass
 from linkwright.inertia.mesh_library import MeshLibrary
@@ -103,7 +103,7 @@ def _solid(
     Returns None, and adds a note, if the shape has no volume or cannot be used.
     """
     geometry = shape.geometry
-    if max(map(abs, shape.origin.xyz)) > FARTHEST:
+    if max(map(abs, shape.origin.xyz)) > MAX_COORDINATE:
         notes.append(phrase("a {kind} shape is left out: it is too far away", kind=term(kind)))
         return None
     if isinstance(geometry, Mesh):
@@ -125,7 +125,7 @@ def _solid(
             )
     else:
         shape_name = type(geometry).__name__.lower()
-        if max(shape_bounds(geometry).high) > FARTHEST:
+        if max(shape_bounds(geometry).high) > MAX_COORDINATE:
             notes.append(phrase("a {kind} {what} is left out: it is too large", kind=term(kind), what=term(shape_name)))
             return None
         solid = shape_properties(geometry)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.geometry.outlines import Outline, SmallMesh, read_small
-from linkwright.geometry.shapes import FARTHEST
+from linkwright.geometry.shapes import MAX_COORDINATE
 from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.packages import PackageFinder
 from linkwright.urdf import Mesh
@@ -112,7 +112,7 @@ class MeshLibrary:
             LinkwrightError: the same errors as `locate`; INR103, the scale is out of range.
         """
         path = self.locate(mesh.filename, element)
-        if max(map(abs, mesh.scale)) > FARTHEST:
+        if max(map(abs, mesh.scale)) > MAX_COORDINATE:
             from linkwright.geometry.meshes import unreadable
 
             raise unreadable(path, phrase("its scale is out of range"))

@@ -97,8 +97,7 @@ class Inference:
         held: the joints, except those of wheels, that hold their position and can be commanded, in file order.
         fixed_base: whether the robot's root is fixed to the world.
         ground: the z of the ground in the root's frame, in m, with all joints at zero: that of the lowest wheel, or
-            without
-                wheels of the lowest point; 0 for a fixed base. A robot is placed in a world at minus this height.
+            without wheels of the lowest point; 0 for a fixed base. A robot is placed in a world at minus this height.
         masses: the mass of each link in kg, declared or inferred.
     """
 

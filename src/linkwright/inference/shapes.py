@@ -10,7 +10,7 @@ import numpy as np
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.geometry.arrays import Array
-from linkwright.geometry.shapes import FARTHEST, Placement, placement, rotated, shape_bounds
+from linkwright.geometry.shapes import MAX_COORDINATE, Placement, placement, rotated, shape_bounds
 from linkwright.geometry.single import Vector3, cross, dot, length, scaled, subtract_vectors
 from linkwright.inertia import MeshLibrary
 from linkwright.urdf import Box, Capsule, Collision, Cylinder, Link, Mesh, Sphere, Visual
@@ -65,7 +65,7 @@ def vertices(shape: Shape, meshes: MeshLibrary) -> Array | None:
         mesh = meshes.load(shape.geometry, shape.element)
     except LinkwrightError:
         return None
-    if not len(mesh.faces) or max(map(abs, shape.origin.xyz)) > FARTHEST:
+    if not len(mesh.faces) or max(map(abs, shape.origin.xyz)) > MAX_COORDINATE:
         return None
     frame = placement(shape.origin)
     corners: Array = mesh.vertices[np.unique(mesh.faces)] @ np.array(frame.rotation).T + np.array(frame.position)
@@ -103,8 +103,7 @@ def round_shape(
     """Return the shape with which a body rolls about an axis, and the names of meshes that cannot be read.
 
     It is the largest shape that is round about the axis; collisions take precedence over visuals. It is None if no
-    shape
-    is round, or if another shape extends beyond it, so that the body cannot roll.
+    shape is round, or if another shape extends beyond it, so that the body cannot roll.
 
     Args:
         members: the links of the body, with their poses in a common frame.
@@ -151,7 +150,7 @@ def _measure_round(
         return None
     shape_frame = placement(shape.origin).inside(frame)
     along, off_axis = _split_along(subtract_vectors(shape_frame.position, point), axis)
-    if not 0.0 < geometry.radius < FARTHEST or off_axis > _MAX_OFF_AXIS * geometry.radius:
+    if not 0.0 < geometry.radius < MAX_COORDINATE or off_axis > _MAX_OFF_AXIS * geometry.radius:
         return None
     if isinstance(geometry, Sphere):
         return RoundShape(geometry.radius, None, along, shape)
@@ -173,7 +172,7 @@ def _measure_round_mesh(
     angles = np.arange(_DIRECTION_COUNT) * (2.0 * pi / _DIRECTION_COUNT)
     reaches = (projected @ np.array((np.cos(angles), np.sin(angles)))).max(axis=0)
     radius, min_reach = float(reaches.max()), float(reaches.min())
-    if not 0.0 < radius < FARTHEST or min_reach < _MIN_ROUNDNESS * radius:
+    if not 0.0 < radius < MAX_COORDINATE or min_reach < _MIN_ROUNDNESS * radius:
         return None
     positions = points @ np.array(axis)
     start, end = float(positions.min()), float(positions.max())

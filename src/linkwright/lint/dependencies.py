@@ -48,7 +48,7 @@ _FAMILIES = (
     ("ros2_controllers", "controller_manager"),
 )
 """Packages, each with the name prefix of the packages that it brings as dependencies."""
-_MOST = 200
+_MAX_FILES = 200
 
 
 def is_always_installed(package: str) -> bool:
@@ -94,7 +94,7 @@ def _transitive_dependencies(manifest: Manifest, finder: PackageFinder) -> Itera
     Dependencies of a package that is not found are left out.
     """
     pending_manifests, visited_names = [manifest], {manifest.name}
-    while pending_manifests and len(visited_names) < _MOST:
+    while pending_manifests and len(visited_names) < _MAX_FILES:
         for dependency in pending_manifests.pop().dependencies:
             if dependency.tag in ("test_depend", "doc_depend") or dependency.name in visited_names:
                 continue

@@ -7,8 +7,8 @@ from functools import cached_property
 from math import prod
 
 from linkwright.geometry.shapes import (
-    FARTHEST,
     IDENTITY,
+    MAX_COORDINATE,
     Bounds,
     Placement,
     placement,
@@ -177,7 +177,7 @@ class Extents:
 
     def _measure(self, shape: Visual | Collision) -> Bounds | None:
         geometry = shape.geometry
-        if max(map(abs, shape.origin.xyz)) > FARTHEST:
+        if max(map(abs, shape.origin.xyz)) > MAX_COORDINATE:
             return None
         if isinstance(geometry, Mesh):
             mesh = self._meshes.outline(shape)
@@ -186,12 +186,12 @@ class Extents:
             box = mesh.bounds
         else:
             box = shape_bounds(geometry)
-            if max(box.high) > FARTHEST:
+            if max(box.high) > MAX_COORDINATE:
                 return None
         return box.moved(placement(shape.origin))
 
 
 def _clamp_position(frame: Placement) -> Placement:
     """Return a placement with its position clamped to `FARTHEST`, to avoid overflow."""
-    x, y, z = (min(max(coordinate, -FARTHEST), FARTHEST) for coordinate in frame.position)
+    x, y, z = (min(max(coordinate, -MAX_COORDINATE), MAX_COORDINATE) for coordinate in frame.position)
     return Placement(frame.rotation, (x, y, z))

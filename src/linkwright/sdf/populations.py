@@ -23,7 +23,7 @@ from linkwright.xmltree import Element
 _AXES = ("linear-x", "linear-y", "linear-z")
 KINDS = ("random", "uniform", "grid", *_AXES)
 """The values of ``<type>`` in a ``<distribution>``."""
-_MOST = 100_000
+_MAX_MODELS = 100_000
 """The maximum number of models in one population."""
 _GOLDEN_ANGLE = pi * (3 - sqrt(5))
 """The angle in radians between consecutive points of a spiral that fills a disc evenly."""
@@ -95,11 +95,11 @@ def _offset_from_corner(population: Population) -> Vector3:
 
 
 def _positions(population: Population) -> Iterator[Vector3]:
-    distribution, count = population.distribution, min(population.count, _MOST)
+    distribution, count = population.distribution, min(population.count, _MAX_MODELS)
     generator = Random(population.name)  # noqa: S311 - the same with each start, on purpose
     if distribution.type == "grid":
         x, y, _ = distribution.step
-        for index in range(min(distribution.rows * distribution.columns, _MOST)):
+        for index in range(min(distribution.rows * distribution.columns, _MAX_MODELS)):
             row, column = divmod(index, distribution.columns)
             yield column * x, row * y, 0.0
     elif population.box is not None:

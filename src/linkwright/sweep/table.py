@@ -26,8 +26,7 @@ class Table:
         parameters: the names of parameters, and ``seed``.
         results: the names of results, in the order of their first occurrence.
         columns: the columns by name, with a value for each row: ``row``, parameters, ``seed``, results, ``error``. A
-            value
-                that a row does not have is None.
+            value that a row does not have is None.
     """
 
     parameters: tuple[str, ...]

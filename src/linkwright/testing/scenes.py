@@ -12,7 +12,7 @@ from linkwright.packages import PackageFinder
 from linkwright.sdf.models import Model
 from linkwright.simulation.server.worlds import LoadedWorld, load_world
 
-_MOST = 64
+_MAX_CACHED_SCENES = 64
 """The maximum number of cached worlds and robots; a test over many arguments loads a robot for each value."""
 
 
@@ -67,7 +67,7 @@ def _read_cached(key: tuple[object, ...], read: Callable[[], tuple[Any, tuple[Pa
         value, files = read()
         entry = _CacheEntry(value, tuple(map(_file_state, files)), files)
     _cache[key] = entry
-    if len(_cache) > _MOST:
+    if len(_cache) > _MAX_CACHED_SCENES:
         del _cache[next(iter(_cache))]
     return entry.value
 

@@ -38,9 +38,7 @@ class AsyncSteppedGraph:
                 node = test.create_node("talker")
                 publisher = node.create_publisher(String, "chatter", 10)
                 node.create_timer(0.5, lambda: publisher.publish(String(data=f"Hello: {len(chatter)}")))
-                await test.advance(3600.0)
-                assert len(chatter) == 7200
-                assert chatter.last.data == "Hello: 7199"
+                await test.advance(3600.0) assert len(chatter) == 7200 assert chatter.last.data == "Hello: 7199"
 
     Args:
         start: the time of day at the start, in seconds since the epoch.

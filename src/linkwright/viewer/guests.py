@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 PATIENCE = 60.0
 """Seconds without a page after which a recording is no longer shown."""
 
-_MOST = 4
+_MAX_GUESTS = 4
 _CHECK_PERIOD = 5.0
 _MIN_IDLE_TIME = 10.0
 """Seconds without a page after which a recording may be replaced by another recording."""
@@ -69,13 +69,13 @@ class GuestRecordings:
         from linkwright.viewer.recording_config import recording_config
 
         await self._close_idlest()
-        if len(self._guests) >= _MOST:
+        if len(self._guests) >= _MAX_GUESTS:
             raise LinkwrightError(
                 Diagnostic(
                     "BAG111",
                     phrase(
                         "{count} recordings are already open: close the page of one of them, and wait a minute",
-                        count=_MOST,
+                        count=_MAX_GUESTS,
                     ),
                 )
             )
@@ -120,7 +120,7 @@ class GuestRecordings:
 
     async def _close_idlest(self) -> None:
         """If the limit is reached, close the recording that has had no pages for the longest time."""
-        if len(self._guests) < _MOST:
+        if len(self._guests) < _MAX_GUESTS:
             return
         latest_time = asyncio.get_running_loop().time() - _MIN_IDLE_TIME
         last_page_times = {key: guest.left for key, guest in self._guests.items() if not len(guest.viewer.audience)}

@@ -26,8 +26,7 @@ class GroundTruth:
         boxes: shape ``(n, 4)``: left, top, right, bottom, in pixels.
         classes: shape ``(n,)``, indices into the dataset's names.
         ignored: shape ``(n,)``, whether a detection of the object counts neither as correct nor as wrong (``iscrowd``
-            in
-            COCO).
+            in COCO).
     """
 
     boxes: NDArray[np.float32]
@@ -66,8 +65,8 @@ class Evaluation:
 
     Attributes:
         images: the number of images.
-        map50: the mean of `ClassFigures.ap50` over the classes with objects.
-        map: the mean of `ClassFigures.ap`.
+        map50: the mean of `ClassResults.ap50` over the classes with objects.
+        map: the mean of `ClassResults.ap`.
         classes: the results for each class.
         confusion: shape ``(classes + 1, classes + 1)``: the number of objects of a class (row) detected as a class
             (column) with a score of at least 0.5. The last column counts objects that were not found, the last row
@@ -119,8 +118,7 @@ def evaluate(names: Sequence[str], truth: Sequence[GroundTruth], predictions: Se
         names: the class names of `truth`.
         truth: the labels of each image.
         predictions: a detector's detections in the same images, with a threshold near 0. Classes are matched by name;
-            detections
-                of classes that are not in `names` do not count.
+            detections of classes that are not in `names` do not count.
     """
     class_numbers = {name: number for number, name in enumerate(names)}
     detections = [_renumber_classes(class_numbers, detections) for detections in predictions]

@@ -87,10 +87,10 @@ class TextCompiler(Generic[_Form]):
 
 
 _LINKS = f"{os.sep}shares{os.sep}"
-_MOST_BYTES = 24_000_000
+_MAX_BYTES = 24_000_000
 """The maximum total size of the files whose documents are cached. A thousand robots have as much, and a document takes
 fifteen times as much memory as its file."""
-documents: BoundedCache[tuple[str, str], tuple[int, int, Document]] = BoundedCache(_MOST_BYTES, lambda _, file: file[1])
+documents: BoundedCache[tuple[str, str], tuple[int, int, Document]] = BoundedCache(_MAX_BYTES, lambda _, file: file[1])
 """Path and current folder -> modification time, size and document."""
 
 

@@ -45,7 +45,7 @@ def decode(data: bytes, name: str) -> str:
     """Return the text of a file without its byte order mark.
 
     Raises:
-        LinkwrightError: see `decode_with_encoding`.
+        LinkwrightError: see `decoded`.
     """
     return decoded(data, name).text
 

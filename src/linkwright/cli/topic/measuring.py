@@ -197,7 +197,7 @@ def _subscribe(
 
 
 async def _report_until_finished(session: Session, text: Callable[[], str | None]) -> int:
-    """Print the text that `report_text` returns, if any, each second until the command ends.
+    """Print the text that `text` returns, if any, each second until the command ends.
 
     Returns:
         The exit status.

@@ -473,7 +473,7 @@ class ControllerManager:
                 else:
                     loaded.timing.measure(loaded.controller.step, time_ns, step_s)
             except Exception as error:  # noqa: BLE001 - a fault of a controller must not end the others
-                self._fail(loaded, error)  # Safe in the loop: a new list replaces `_active_controllers`.
+                self._fail(loaded, error)  # Safe in the loop: a new list replaces `_active`.
                 continue
             replaced_name = loaded.replace_invalid_commands()
             if replaced_name:

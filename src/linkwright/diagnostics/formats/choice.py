@@ -19,8 +19,7 @@ def format_diagnostics(diagnostics: Iterable[Diagnostic], form: str) -> str:
     """Return diagnostics as text, which ends with a newline.
 
     If a format has one line per diagnostic, the text is empty without diagnostics. Messages are in English unless
-    another
-    language was requested by name (`--lang`).
+    another language was requested by name (`--lang`).
 
     Args:
         diagnostics: the diagnostics, in the order in which they are shown.

@@ -23,7 +23,7 @@ from linkwright.diagnostics import (
 )
 from linkwright.files.input_files import read_file
 
-MOST_PIXELS = 1 << 28
+MAX_PIXELS = 1 << 28
 """The maximum number of pixels of a map that is read, because the header of a small file can declare any size."""
 _MAX_FILE_BYTES = 1 << 30
 _PGM = re.compile(rb"P([25])" + rb"(?:\s|#[^\n]*\n)+(\d{1,9})" * 3 + rb"\s")
@@ -93,7 +93,7 @@ def _grey_with_opacity(pixels: NDArray[np.uint8]) -> Any:
 
 def _parse_pgm(path: Path, data: bytes, header: re.Match[bytes]) -> MapImage:
     columns, rows, max_value = (int(group) for group in header.groups()[1:])
-    if not 0 < rows * columns <= MOST_PIXELS or not 0 < max_value < 1 << 16:
+    if not 0 < rows * columns <= MAX_PIXELS or not 0 < max_value < 1 << 16:
         raise _unreadable(
             path,
             phrase(
@@ -121,8 +121,8 @@ def _read_with_pillow(path: Path, data: bytes) -> MapImage:
     pillow = _pillow()
     try:
         with pillow.open(BytesIO(data)) as file:
-            if file.width * file.height > MOST_PIXELS:
-                raise _unreadable(path, phrase("it has more than {most} pixels", most=MOST_PIXELS))
+            if file.width * file.height > MAX_PIXELS:
+                raise _unreadable(path, phrase("it has more than {most} pixels", most=MAX_PIXELS))
             has_16_bits = file.mode.startswith("I")
             has_opacity = file.mode in ("LA", "PA", "RGBA", "La", "RGBa") or "transparency" in file.info
             values = np.asarray(file if has_16_bits else file.convert("RGBA" if has_opacity else "RGB"), np.float64)

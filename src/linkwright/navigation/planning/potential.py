@@ -27,7 +27,7 @@ Cell = tuple[int, int]
 NEUTRAL: Final = 50.0
 """The price of crossing a cell of cost 0."""
 _COST_FACTOR: Final = 0.8
-_MOST: Final = 253.0
+_MAX_COST: Final = 253.0
 """The maximum price of a cell, which is also the price of an unknown cell."""
 _STEPS_BETWEEN_CHECKS: Final = 4
 """The number of steps of the wave between two checks of the cells that were held back."""
@@ -44,10 +44,10 @@ def crossing_prices(costs: NDArray[np.uint8], *, allow_unknown: bool = True) -> 
     Returns:
         Prices, of the shape of the costs.
     """
-    table = np.minimum(NEUTRAL + _COST_FACTOR * np.arange(256.0), _MOST)
+    table = np.minimum(NEUTRAL + _COST_FACTOR * np.arange(256.0), _MAX_COST)
     table[MAX_PASSABLE + 1 :] = np.inf
     if allow_unknown:
-        table[UNKNOWN] = _MOST
+        table[UNKNOWN] = _MAX_COST
     prices: Floats = table[costs]
     return prices
 

@@ -28,9 +28,8 @@ class ImageFrame(DataContent):
     """An image of the displays Image and Camera.
 
     `width` and `height` are the size of the image in the message; `columns` and `rows` are the size of the data, which
-    may be smaller.
-    The data contains 8-bit pixels row by row, or a file that browsers can decode. `quality` is the quality (1 to 95)
-    of a WebP file that was made from the image for a slow connection, or 0 for other data.
+    may be smaller. The data contains 8-bit pixels row by row, or a file that browsers can decode. `quality` is the
+    quality (1 to 95) of a WebP file that was made from the image for a slow connection, or 0 for other data.
     """
 
     width: int

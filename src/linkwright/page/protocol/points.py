@@ -11,9 +11,8 @@ class CloudPoints(DataContent):
     """The points of PointCloud2 and similar messages, in the frame of the message, metres, shape (N, 3).
 
     `colours` has the RGBA colour of each point, shape (N, 4), or is empty if all points have the colour of the
-    display.
-    `translucent` is whether any alpha is less than 255. `pixel` is the width of a point in m per metre of its depth,
-    or 0 if points have the size of the display. For a slow connection, only every `step`-th point is sent.
+    display. `translucent` is whether any alpha is less than 255. `pixel` is the width of a point in m per metre of its
+    depth, or 0 if points have the size of the display. For a slow connection, only every `step`-th point is sent.
     """
 
     positions: Floats

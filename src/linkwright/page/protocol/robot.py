@@ -15,8 +15,7 @@ class JointControl(Record):
     """A row of the Joints panel.
 
     `mimic` is the name of the joint that this joint follows, with position = multiplier * position of that joint +
-    offset.
-    The user cannot move a mimic joint.
+    offset. The user cannot move a mimic joint.
     """
 
     name: str

@@ -94,9 +94,8 @@ class WorldScene(DataContent):
 
     `ambient` and `background` are colours: red, green, blue. `shadows` is whether lights cast shadows. `daylight` is
     the brightness of the sky, from 0 at night to 1; None if there is no sky. `robots` are the names of the models that
-    count as
-    robots. `camera` is the initial camera pose in the world's file, x y z qx qy qz qw in the world frame, looking along
-    x; None if the file sets none.
+    count as robots. `camera` is the initial camera pose in the world's file, x y z qx qy qz qw in the world frame,
+    looking along x; None if the file sets none.
     """
 
     revision: int

@@ -209,8 +209,7 @@ def remove_recovery_files(previous_path: Path | None, config: RvizConfig, recent
 
     Args:
         previous_path: the previous file of the configuration, or None. It is also removed if it is a recovery file,
-            because
-            the configuration has been saved elsewhere.
+            because the configuration has been saved elsewhere.
         config: the configuration, whose path is the file that it was saved to.
         recent: the list from which removed files are dropped.
     """

@@ -305,8 +305,7 @@ def qos_of(properties: PropertyStore, name: str = "Topic", *, transient_local: b
         properties: the display's properties.
         name: the name of the topic property.
         transient_local: whether the durability is transient local, with which earlier messages are also received;
-            None to use
-            the durability of the property.
+            None to use the durability of the property.
     """
     get = properties.text
     keep_all = get(name, "History Policy") == "Keep All"

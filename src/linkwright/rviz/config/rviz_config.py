@@ -400,8 +400,7 @@ class RvizConfig:
         """Return the sizes of grid and axes that fit the robot, given the measurements of a page.
 
         Each item is a display, the path of a property and its new value. Properties that the user has changed are
-        omitted.
-        Only the first call returns sizes; later calls return an empty list.
+        omitted. Only the first call returns sizes; later calls return an empty list.
 
         Args:
             diagonal: the diagonal of the robot's bounding box, m.

@@ -33,7 +33,7 @@ from linkwright.rviz.displays.base.topic_display import TOPIC, SideTopic, TopicD
 from linkwright.rviz.image_compression import ImageCompressor
 
 _ENCODINGS: dict[int, Literal["grey", "rgb", "rgba"]] = {1: "grey", 3: "rgb", 4: "rgba"}
-MOST_PIXELS = 2_100_000
+MAX_PIXELS = 2_100_000
 """The largest number of pixels of an image that is sent to pages, about Full HD, because pixels are not compressed."""
 
 
@@ -164,7 +164,7 @@ class ImageTopicDisplay(TopicDisplay):
                 )
             return ImageFrame(0, 0, 0, 0, "file", data, camera)
         image = decode_image(message, self.ranges)
-        reduced_image = image.reduce_by(self.reduction(image.width, image.height)).subsample(MOST_PIXELS)
+        reduced_image = image.reduce_by(self.reduction(image.width, image.height)).subsample(MAX_PIXELS)
         return ImageFrame(
             width=image.width,
             height=image.height,

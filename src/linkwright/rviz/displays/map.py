@@ -155,8 +155,7 @@ class MapDisplay(TopicDisplay):
         """Derive the update topic from the map's topic, as RViz does.
 
         If the file contains an update topic, it is replaced only if `replace_in_file` is true. If the file contains
-        none, the
-        derived topic is not written to the file.
+        none, the derived topic is not written to the file.
         """
         topic = self.properties.text(TOPIC).strip()
         update_topic = f"{topic}_updates" if topic else ""

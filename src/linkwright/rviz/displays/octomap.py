@@ -26,7 +26,7 @@ from linkwright.rviz.displays.moveit.voxels import (
 )
 
 _TOPIC = "Octomap Topic"
-_MOST = 3.4028234663852886e38
+_MAX_FLOAT = 3.4028234663852886e38
 """The property value that means infinity, as in RViz."""
 
 _MAX_DEPTH = 16
@@ -53,8 +53,8 @@ class OctomapDisplay(StoredMarkersDisplay):
             minimum=1,
             maximum=_MAX_DEPTH,
         ),
-        PropertySpec("Max. Height Display", "float", _MOST, "The maximum height of cells that are drawn, in metres."),
-        PropertySpec("Min. Height Display", "float", -_MOST, "The minimum height of cells that are drawn, in metres."),
+        PropertySpec("Max. Height Display", "float", _MAX_FLOAT, "The maximum height of drawn cells, in metres."),
+        PropertySpec("Min. Height Display", "float", -_MAX_FLOAT, "The minimum height of drawn cells, in metres."),
     )
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:

@@ -29,8 +29,8 @@ class Edit(Generic[State]):
         name: the name of the edit, for menus.
         swap: restores a state, and returns the state that it replaced.
         before: the state before the edit.
-        subject: identifies the edited value, of which quick successive edits are merged, see `History.is_at`; None for
-            an edit that is never merged.
+        subject: identifies the edited value; quick successive edits of one value are merged, see `History.would_merge`.
+            None for an edit that is never merged.
     """
 
     def __init__(

@@ -89,7 +89,7 @@ class MeshLibrary:
     def visuals(self, body: Any, shape: Shape, pose: Transform, element: Element | None) -> list[Any]:
         """Add a visual with the materials of its mesh file to a body, and return the added geoms.
 
-        The arguments are the same as in `add_collision`.
+        The arguments are the same as in `collisions`.
         """
         if isinstance(shape, Heightmap):
             return self._add_heightmap(body, shape, pose, element)
@@ -336,7 +336,7 @@ def _check_triangle_count(path: Path, count: int) -> None:
     """Raise an error if a mesh has too many triangles.
 
     Raises:
-        LinkwrightError: SIM115, the mesh has more than `_MAX_TRIANGLES` triangles.
+        LinkwrightError: SIM115, the mesh has more than `_MOST_TRIANGLES` triangles.
     """
     if count > _MOST_TRIANGLES:
         values = {"path": display_path(path), "count": count, "most": _MOST_TRIANGLES}

@@ -11,7 +11,7 @@ from linkwright.simulation.simulation import Simulation
 
 _MIN_DEPTH = 0.02
 """The depth in m above which bodies count as overlapping; soft contacts are up to this deep at rest."""
-_MOST = 8
+_MAX_REPORTED = 8
 """The maximum number of overlaps that are reported individually."""
 
 
@@ -38,7 +38,7 @@ def overlaps(simulation: Simulation, names: Container[str] | None = None) -> lis
                 )
                 depths[key] = max(depths.get(key, 0.0), -float(contact.dist))
     deepest = sorted(depths.items(), key=lambda item: -item[1])
-    findings = [_finding(simulation, *pair, depth) for pair, depth in deepest[:_MOST]]
+    findings = [_finding(simulation, *pair, depth) for pair, depth in deepest[:_MAX_REPORTED]]
     remaining_count = len(deepest) - len(findings)
     if remaining_count:
         message = counted(

@@ -60,8 +60,7 @@ class ActionReader:
 
         Raises:
             LinkwrightError: VOICE302, there is not exactly one action, or it is invalid; VOICE305, its fields do not
-                fit the
-                    type of its message.
+                fit the type of its message.
         """
         kinds = [kind for kind in self.KINDS if self._keys.node(kind) is not None]
         if len(kinds) != 1:

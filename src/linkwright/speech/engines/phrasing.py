@@ -29,8 +29,7 @@ class Phrasing:
         """Convert phrases to an engine's vocabulary.
 
         A word that is not in the vocabulary is tried in lower case. In a language that is written without spaces,
-        such as
-        Chinese, it is also divided into the fewest words of the vocabulary.
+        such as Chinese, it is also divided into the fewest words of the vocabulary.
 
         Args:
             phrases: the phrases as the user wrote them.

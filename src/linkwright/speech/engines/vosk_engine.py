@@ -1,7 +1,7 @@
 """The engine ``vosk``: a grammar of phrases with a pretrained model.
 
 The grammar consists of the phrases and ``[unk]``, which matches all other speech. A result with ``[unk]``, or with a
-word of less confidence than `LEAST_CONFIDENCE`, is rejected. In our measurements this reduced false commands in read
+word of less confidence than `MIN_CONFIDENCE`, is rejected. In our measurements this reduced false commands in read
 texts from one in sixty to none, at the cost of one correct command in a hundred.
 
 Partial results come from the best path and arrive immediately; with confidences, Vosk would delay them until it has

@@ -39,8 +39,7 @@ class EnrolledEngine(SpeechEngine):
 
     Args:
         options: `model` is the file of words; None for `words_path`. Only words that are also phrases are recognized;
-            the
-                other words help to reject sound. Case and surrounding spaces are ignored.
+            the other words help to reject sound. Case and surrounding spaces are ignored.
 
     Raises:
         LinkwrightError: the file exists but cannot be read; see `Words.read`.

@@ -65,7 +65,7 @@ class Recogniser:
         self._word_indices = np.array([word for word, _ in (*close_takes, *far_takes)])
         self._is_far = np.arange(len(self._word_indices)) >= len(close_takes)
         self._templates = Templates(tuple(take for _, take in (*close_takes, *far_takes)))
-        self._own_worst_by_word: dict[int, float] = {}  # see `_own_worst`
+        self._own_worst_by_word: dict[int, float] = {}  # see `_own_worst_distance`
         self.longest = max(len(take.powers) for takes in self._takes for take in takes)
 
     def guess(self, powers: Powers, noise: NDArray[np.float64]) -> Guess:

@@ -35,8 +35,7 @@ class AudioCapture(SingleNode):
 
     - ``device``: a microphone by number or part of its name.
     - ``file``: a WAV file to publish instead, paced by the node's clock. It starts when the first subscriber arrives
-    and
-        is followed by silence, or with ``loop`` by the file again.
+    and is followed by silence, or with ``loop`` by the file again.
     - ``chunk``: the number of samples in a message.
 
     Raises:

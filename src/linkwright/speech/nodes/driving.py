@@ -31,8 +31,7 @@ class Driver:
     """Publishes the velocities of drives.
 
     A distance or an angle is measured with ``odom`` (nav_msgs/msg/Odometry) if it is received, and else computed from
-    speed
-    and time. Time is the node's time, which may be simulated.
+    speed and time. Time is the node's time, which may be simulated.
 
     Args:
         node: the node that publishes.

@@ -37,8 +37,7 @@ class Presses:
 
     Attributes:
         proposes_enrolling: whether the answer to the last press proposed enrolling. The next press, or a command,
-            withdraws
-                the proposal.
+            withdraws the proposal.
     """
 
     def __init__(self, *, can_enrol: bool = False) -> None:

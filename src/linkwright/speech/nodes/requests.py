@@ -41,8 +41,7 @@ class Goals:
         type_name: the type of the action.
         name: the name of the action.
         on_end: called when a goal ends, with whether it was reached, and the server's reason or an empty text; not
-            called for a
-                goal that was canceled or replaced.
+            called for a goal that was canceled or replaced.
     """
 
     def __init__(self, node: Node, type_name: str, name: str, on_end: Callable[[bool, str], None]) -> None:

@@ -37,8 +37,7 @@ class SampleStamps:
             samples: the number of samples in the block.
             now: the time in ns at which the last sample was recorded, or later.
             lost: the seconds of sound that are missing in the block or before it. The stamp jumps over them, but at
-                most one
-                    second into the future.
+                most one second into the future.
         """
         length = samples * NANOSECONDS_PER_SECOND // RATE
         start = max(0, now - length)

@@ -26,7 +26,7 @@ class Resampler:
     """Resamples a stream of any rate to `RATE`.
 
     Args:
-        rate: the input rate in samples per second, `LOWEST_RATE` to `HIGHEST_RATE`.
+        rate: the input rate in samples per second, `MIN_RATE` to `MAX_RATE`.
     """
 
     def __init__(self, rate: int) -> None:

@@ -33,8 +33,7 @@ class ColourDetector(Detector):
     Settings:
         ``colours``
             a mapping from names to six numbers; see `hsv_range`. If the minimum hue exceeds the maximum, as for red,
-            the
-            range wraps around through 0. The default is `COLOURS`.
+            the range wraps around through 0. The default is `COLOURS`.
         ``least_area``
             the minimum area of a patch, in pixels; 150 by default.
 

@@ -44,8 +44,8 @@ class Detect3DNode(SingleNode):
     """Computes positions of detections from depth images, and optionally from the ground.
 
     Parameters: ``target_frame`` (frame of the result), ``depth_image_units_divisor`` (units per metre in images of
-        16UC1),
-    ``maximum_detection_threshold`` (the largest difference in depth from the middle of the object's surface, metres),
+        16UC1), ``maximum_detection_threshold`` (the largest difference in depth from the middle of the object's
+        surface, metres),
     ``depth_image_reliability`` and ``depth_info_reliability`` (1 reliable, 2 best effort), ``ground_frame`` (its x and
     y span the ground; empty to place no objects on the ground), ``maximum_distance`` (metres).
 

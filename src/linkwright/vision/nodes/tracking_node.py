@@ -26,10 +26,8 @@ class TrackingNode(SingleNode):
     """Assigns persistent IDs to detections.
 
     Parameters: ``track_high_thresh``, ``track_low_thresh`` and ``new_track_thresh`` (scores), ``match_thresh`` (the
-        maximum
-    of 1 - IoU), ``track_buffer`` (how long an undetected object is kept, in images of 1/30 s), ``min_hits``
-    (consecutive
-    images before an object gets an ID).
+        maximum of 1 - IoU), ``track_buffer`` (how long an undetected object is kept, in images of 1/30 s), ``min_hits``
+        (consecutive images before an object gets an ID).
 
     Raises:
         LinkwrightError: a parameter has an invalid value (NODE433, GRAPH201).

@@ -109,10 +109,8 @@ class ObjectRequest:
         """Return whether an object is the requested one.
 
         A class can have a colour in its name, as ``red_ball`` has. A class that is only a colour matches any object
-        of that
-        colour, and matches a ball if the patch is about as wide as high. If the request is for a ball of any colour,
-        a round
-        patch also matches.
+        of that colour, and matches a ball if the patch is about as wide as high. If the request is for a ball of any
+        colour, a round patch also matches.
 
         Args:
             name: the class of the object.

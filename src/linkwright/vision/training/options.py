@@ -40,8 +40,7 @@ class Options:
         seed: the random seed.
         threads: the number of CPU threads.
         precision: the number format in training: ``float32``, or ``bfloat16`` for computations in which 16 bits are
-            enough.
-                Weights always have 32 bits.
+            enough. Weights always have 32 bits.
         device: the training device: ``cpu``, or ``auto`` for the first CUDA GPU that PyTorch finds, or else the CPU.
         weights: the ONNX file of an earlier training to start from; None for random weights.
         resume: whether to resume from ``last.pt`` in the output folder.

@@ -52,7 +52,7 @@ class Departures:
     Only the discovery thread may call the methods, except `watch`.
 
     Args:
-        remote: the remote graph, which calls `on_endpoint_left` and `on_announcement`.
+        remote: the remote graph, which calls `endpoint_left` and `announced`.
         now: the steady clock, in seconds.
     """
 

@@ -144,7 +144,7 @@ class Pacer:
             number: the sequence number that the writer assigns to the sample.
             sample: the serialized sample, whose length is a multiple of four bytes.
             published_ns: when the sample was published, in ns since the epoch.
-            addresses: the addresses of the participants with readers; see `reader_addresses`.
+            addresses: the addresses of the participants with readers; see `addresses_of`.
         """
         if self._socket is None:
             self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)

@@ -25,7 +25,7 @@ from linkwright.nodes.velocity_topic import TWIST, TWIST_STAMPED
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _DEPTH = 10
-_MOST = 255
+_MAX_PRIORITY = 255
 
 
 class _Source:
@@ -33,7 +33,7 @@ class _Source:
 
     def __init__(self, name: str, topic: str, timeout: float, priority: int) -> None:
         self.name, self.topic, self.timeout = name, topic, timeout
-        self.priority = max(0, min(_MOST, priority))
+        self.priority = max(0, min(_MAX_PRIORITY, priority))
         self.locked = False
         self._latest_message_ns: int | None = None
 

@@ -1,10 +1,9 @@
 """Reads octrees in the format of the OctoMap library from octomap_msgs/msg/Octomap.
 
 Both the binary and the full form store the tree from the root: each node precedes its children, and the children are
-in
-order. The binary form has two bits for each child of an inner node: free, occupied, or an inner node. The full form has
-a float with the log-odds that a node is occupied, further data of the tree's class, and a byte with one bit for each
-existing child.
+in order. The binary form has two bits for each child of an inner node: free, occupied, or an inner node. The full form
+has a float with the log-odds that a node is occupied, further data of the tree's class, and a byte with one bit for
+each existing child.
 """
 
 from __future__ import annotations

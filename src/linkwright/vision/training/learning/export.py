@@ -48,8 +48,7 @@ def to_onnx(
     """Export a network as the content of an ONNX file.
 
     The input is one image with the given width and height; the output has shape ``[1, 4 + classes, cells]``. Weights
-    are
-    stored in 16 bits and used in 32, which halves the file and changes scores by less than a thousandth.
+    are stored in 16 bits and used in 32, which halves the file and changes scores by less than a thousandth.
 
     Args:
         network: the network to export.

@@ -28,8 +28,7 @@ def load_weights(network: Network, names: Sequence[str], path: Path, images: Ite
 
     Args:
         network: the network to change. If its classes are those of the file, it computes the same boxes and logits,
-            up to
-                the shift that the export adds. It is in evaluation mode afterwards.
+            up to the shift that the export adds. It is in evaluation mode afterwards.
         names: the names of the network's classes.
         path: the path of the ONNX file.
         images: the images with which layer statistics are measured, shape (batch, 3, height, width).

@@ -23,8 +23,8 @@ from linkwright.wire.dds.rtps.values import PREFIX, Address
 _FIRST_REPEAT, _LAST_REPEAT = 0.1, 2.0
 """The first and the longest interval, in seconds, between reminders to a reader that has not acknowledged."""
 
-_MOST = 1000
-_MOST_BYTES = 64 << 20
+_MAX_SAMPLES = 1000
+_MAX_BYTES = 64 << 20
 """The maximum number and size of samples that wait for acknowledgement.
 
 When a limit is exceeded, the oldest samples are dropped.
@@ -115,7 +115,7 @@ class Writer:
         number = self._last_number
         self._changes[number] = _Change(payload, inline, to, time.time_ns())
         self._byte_count += len(payload or b"")
-        while len(self._changes) > 1 and (len(self._changes) > _MOST or self._byte_count > _MOST_BYTES):
+        while len(self._changes) > 1 and (len(self._changes) > _MAX_SAMPLES or self._byte_count > _MAX_BYTES):
             self._drop(min(self._changes))
         packets: list[Packet] = []
         for reader, reader_state in self._readers.items():
