@@ -152,7 +152,7 @@ REFUSED = {
     "its shapes are written with expressions, and numbers in the file would not follow them": """
       <xacro:property name="s" value="1"/>
       <link name="a"><visual><geometry><box size="${s} 1 1"/></geometry></visual></link>""",
-    "the <inertial> is written with expressions": f"""
+    "its <inertial> is written with expressions": f"""
       <link name="a"><inertial><mass value="${{1 + 1}}"/>{ONES}</inertial></link>""",
     "<xacro:heavy> generates a part of it": f"""
       <xacro:macro name="heavy"><inertial><mass value="1"/>{ONES}</inertial></xacro:macro>
@@ -164,7 +164,7 @@ REFUSED = {
 def test_what_xacro_writes_is_refused(write, why):
     before = f"{XACRO}{REFUSED[why]}</robot>"
     written, text = write(before, name="r.xacro")
-    assert written.refused == {"a": why}
+    assert written.refusals == {"a": why}
     assert written.links == ()
     assert text == before
 
@@ -184,7 +184,7 @@ def test_a_place_that_makes_two_links_is_refused(write, tmp_path):
     joint = '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>'
     include = '<xacro:property name="n" value="{}"/><xacro:include filename="part.xacro"/>'
     written, _ = write(f"{XACRO}{include.format('a')}{include.format('b')}{joint}</robot>", name="r.xacro")
-    assert written.refused == {"a": "its text in the file defines several links"}
+    assert written.refusals == {"a": "its text in the file defines several links"}
 
 
 def test_a_file_that_changed_meanwhile_is_left_alone(tmp_path):

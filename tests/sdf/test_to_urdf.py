@@ -108,7 +108,7 @@ def joint(parent: str, child: str, name: str = "j") -> str:
         (
             TWO + "<link name='c'/>" + joint("b", "c") + joint("c", "b", "k"),
             "<model name='m'>",
-            "is below itself",
+            "link 'b' is its own descendant in the tree of joints",
         ),
         (
             "<pose>1 0 0 0 0 0</pose><link name='a'/>",
@@ -127,7 +127,7 @@ def joint(parent: str, child: str, name: str = "j") -> str:
             "<model name='m'>",
             "joint 'j' has no <axis>",
         ),
-        ("<link name='a'/></model><model name='n'><link name='a'/>", "<model name='m'>", "it has 2 models"),
+        ("<link name='a'/></model><model name='n'><link name='a'/>", "<model name='m'>", "it contains 2 models"),
         (TWO + joint("a", "nowhere"), "<model name='m'>", "there is no frame 'nowhere'"),
     ],
 )

@@ -90,7 +90,7 @@ BAD = {
         f"{SQUARES}\n@scenario()\ndef other(): ...\n"
     ),
     "SWEEP104 squares.py:2:1 the function 'f' does not accept 'm'": f"{HEAD}@scenario(m=[1])\ndef f(): ...\n",
-    "SWEEP104 squares.py:2:1 the function 'f' must have 'm', which @scenario does not set": (
+    "SWEEP104 squares.py:2:1 the function 'f' needs 'm', which @scenario does not set": (
         f"{HEAD}@scenario()\ndef f(m, k=1, seed=0): ...\n"
     ),
     "SWEEP104 squares.py:2:1 a parameter cannot be named 'row': the table already has this column": (

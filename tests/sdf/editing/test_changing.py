@@ -240,9 +240,9 @@ def test_a_thing_that_comes_from_an_entity_is_told():
         "<?xml version='1.0'?><!DOCTYPE sdf [<!ENTITY m \"<model name='m'><link name='l'/></model>\">]>\n"
         "<sdf version='1.6'><world name='w'>&m;</world></sdf>"
     )
-    with pytest.raises(EditError, match="comes from an entity, and cannot be edited"):
+    with pytest.raises(EditError, match="cannot be edited because it comes from an XML entity"):
         change(world_text(text), [Change("m", static=True)])
-    with pytest.raises(EditError, match="comes from an entity, and cannot be edited"):
+    with pytest.raises(EditError, match="cannot be edited because it comes from an XML entity"):
         delete(world_text(text), ["m"])
 
 
