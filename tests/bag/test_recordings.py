@@ -205,7 +205,7 @@ def test_a_part_in_which_nothing_was_written_is_left_out(tmp_path: Path) -> None
 def test_files_of_other_names_are_one_recording_where_all_are_named(tmp_path: Path) -> None:
     files = parts(tmp_path, "mcap", ["morning", "noon"])
     with pytest.raises(
-        LinkwrightError, match=r"different recordings according to their names: morning.mcap, noon.mcap"
+        LinkwrightError, match=r"show that they belong to different recordings: morning.mcap, noon.mcap"
     ) as caught:
         BagReader(tmp_path / "drive")
     (diagnostic,) = caught.value.diagnostics
@@ -449,5 +449,5 @@ def test_what_a_file_is_instead_of_a_recording_is_told(
 def test_a_database_of_something_else_is_told(tmp_path: Path) -> None:
     with closing(sqlite3.connect(tmp_path / "a.db3")) as database:
         database.execute("CREATE TABLE cats (name TEXT)")
-    with pytest.raises(LinkwrightError, match="a database without the tables of a recording"):
+    with pytest.raises(LinkwrightError, match="an SQLite database without the tables of a recording"):
         BagReader(tmp_path / "a.db3")

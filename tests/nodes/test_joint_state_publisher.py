@@ -300,12 +300,7 @@ class TestParameters:
             ),
             (
                 {"dependent_joints": {"a": {"parent": "b", "faktor": 2.0}}},
-                [
-                    (
-                        "'a.faktor' is not a valid name of a dependent joint's write "
-                        "JOINT.parent, JOINT.factor or JOINT.offset"
-                    )
-                ],
+                ["invalid dependent_joint name 'a.faktor': write JOINT.parent, JOINT.factor or JOINT.offset"],
             ),
         ],
     )

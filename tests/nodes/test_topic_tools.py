@@ -238,14 +238,14 @@ async def test_an_expression_that_fails_is_told_and_the_next_message_counts(test
 @pytest.mark.parametrize(
     ("kind", "words", "text"),
     [
-        (Relay, [], "parameter 'input_topic' of 'relay' has no set"),
+        (Relay, [], "parameter 'input_topic' of 'relay' is not set"),
         (Relay, ["a", "b", "c"], "unexpected argument 'c'"),
         (Throttle, ["often", "a", "1"], "parameter 'throttle_type' of 'throttle' cannot be 'often'"),
-        (Throttle, ["messages", "a", "fast"], "'fast' is not a valid value for 'msgs_per_sec'"),
+        (Throttle, ["messages", "a", "fast"], "'fast' is not a value of 'msgs_per_sec'"),
         (Throttle, ["messages", "a", "0"], "parameter 'msgs_per_sec' of 'throttle' cannot be '0.0'"),
-        (Drop, ["a", "1"], "parameter 'Y' of 'drop' has no set"),
+        (Drop, ["a", "1"], "parameter 'Y' of 'drop' is not set"),
         (Delay, ["a", "-1"], "parameter 'delay' of 'delay' cannot be '-1.0'"),
-        (Mux, ["out"], "parameter 'input_topics' of 'mux' has no set"),
+        (Mux, ["out"], "parameter 'input_topics' of 'mux' is not set"),
         (Transform, ["a", "b", "std_msgs/Nothing"], "there is no message 'std_msgs/msg/Nothing'"),
         (Transform, ["a", "b", "std_msgs/String", "m +"], "'m +' cannot be parsed"),
         (Transform, ["a", "b"], "the following arguments are required: output_type"),

@@ -205,7 +205,7 @@ async def test_a_message_of_values_is_made_once_and_only_when_it_is_handed_over(
 async def test_the_second_of_two_nodes_of_one_name_is_not_loaded():
     async with served(GROUND, robot(joint_states()), robot(joint_states(), name="two")) as (server, _, log):
         assert [len(server.plugins(name)) for name in ("mbot", "two")] == [1, 0]
-        assert [each.text for each in log if "another plugin already has the node name '/joints'" in each.text]
+        assert [each.text for each in log if "another plugin already uses the node name '/joints'" in each.text]
 
 
 async def test_what_is_not_simulated_is_listed_once():

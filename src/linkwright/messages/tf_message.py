@@ -358,7 +358,7 @@ class TFMessage(Message):
             return _generic_writer()(self)
         parents = tuple([value._header._frame_id for value in values])
         children = tuple([value._child_frame_id for value in values])
-        stamps = [(value._header._file_stamp._sec, value._header._file_stamp._nanosec) for value in values]
+        stamps = [(value._header._stamp._sec, value._header._stamp._nanosec) for value in values]
         return layout_for(parents, children).with_stamps(stamps, _poses(values))
 
     @classmethod

@@ -226,7 +226,7 @@ async def test_the_limits_of_jazzy_have_two_directions(wheels):
 async def test_another_controller_may_command_it(wheels):
     controller = wheels.start(DiffDriveController, NAME, **ROBOT)
     assert [reference.name for reference in controller.references] == ["base/linear/velocity", "base/angular/velocity"]
-    controller.chained = True
+    controller.is_chained = True
     await wheels.step(controller)
     assert speeds(wheels) == [0.0, 0.0]
     controller.references[0].value, controller.references[1].value = 1.0, 0.5
@@ -312,7 +312,7 @@ async def test_others_may_say_where_the_robot_is(wheels):
         ),
         (
             {"angular": {"z": {"max_velocity": 1.0, "min_velocity": 2.0}}},
-            "the minimum velocity of 'angular.z' (2) is greater than the maximum ()1",
+            "the minimum velocity of 'angular.z' (2) is greater than the maximum (1)",
         ),
     ],
 )

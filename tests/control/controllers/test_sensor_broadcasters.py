@@ -153,4 +153,4 @@ def test_the_admittance_controller_is_left_out_with_a_word():
         controller_class("admittance_controller/AdmittanceController")
     (found,) = raised.value.diagnostics
     assert found.code == "CTL103"
-    assert "does not have this controller" in str(found.hint)
+    assert "does not support admittance control" in str(found.hint)

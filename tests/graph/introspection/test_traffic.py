@@ -44,7 +44,7 @@ def test_in_silence_both_figures_fall():
 
 
 def test_old_messages_are_forgotten_but_for_the_last_two():
-    window = filled(101, 100 * MS, longest_ns=2 * SECOND)
+    window = filled(101, 100 * MS, max_age_ns=2 * SECOND)
     assert window.traffic(10 * SECOND).count == 21
     assert window.traffic(1000 * SECOND).count == 2
 

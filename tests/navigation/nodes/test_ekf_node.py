@@ -286,7 +286,10 @@ async def test_the_unscented_filter_is_a_node_too(test):
     ("parameters", "text"),
     [
         ({"frequency": 0.0}, "parameter 'frequency' of 'ekf_filter_node' cannot be '0.0'"),
-        ({"process_noise_covariance": [1.0, 2.0]}, "'process_noise_covariance' must have 225 / 15 values, but has 2"),
+        (
+            {"process_noise_covariance": [1.0, 2.0]},
+            "'process_noise_covariance' must have 225 / 15 values, but it has 2",
+        ),
         ({"odom0": "a", "odom0_config": [True]}, "parameter 'odom0_config' must have 15 values, but it has 1"),
         (
             {"map_frame": "odom"},

@@ -311,7 +311,11 @@ def test_mapping_goes_on_with_a_saved_map(test, tmp_path):
 def test_a_file_that_is_no_graph_is_refused_with_a_reason(test, tmp_path):
     (tmp_path / "other.posegraph").write_bytes(b"22 serialization::archive 17 0 0")
     (tmp_path / "broken.posegraph").write_bytes(b"nothing of the kind")
-    for name, reason in (("other", "slam_toolbox itself"), ("broken", "not a pose graph"), ("none", "does not exist")):
+    for name, reason in (
+        ("other", "slam_toolbox wrote it"),
+        ("broken", "it does not contain a pose graph"),
+        ("none", "does not exist"),
+    ):
         with pytest.raises(LinkwrightError) as caught:
             start(test, LocalizationSlamToolbox, map_file_name=str(tmp_path / name), map_start_at_dock=True)
         assert caught.value.diagnostics[0].code == "NAV501"

@@ -80,7 +80,7 @@ async def test_a_command_that_is_not_repeated_ends(line, stage, logged):
     await stage.clock.advance(2.0)
     assert one.speeds() == [0.125, 0.25, 0.25, 0.25, 0.125, 0.0]
     assert logged("INFO")[-1:] == [
-        "no command for 0.2 s (velocity_timeout), and the last one was not a stop; the robot is stopped"
+        "no command was received for 0.2 s (velocity_timeout), and the last one was not a stop, so the robot is stopped"
     ]
 
 
@@ -106,7 +106,7 @@ async def test_it_stops_when_who_commanded_is_lost_and_says_so(line, stage, logg
     assert one.speeds()[-1] == 0.0
     assert logged("WARN") == [
         (
-            "'/driver', which sent the commands on '/cmd_vel', was lost (killed, crashed or out of reach): "
+            "'/driver', which sent the commands on '/cmd_vel', was lost (killed, crashed or out of reach); "
             "the robot is stopped"
         )
     ]

@@ -27,11 +27,13 @@ def _check_command_combination(name: str, value: tuple[str, ...]) -> Phrase | No
     if problem is not None:
         return problem
     if VELOCITY in value and len(value) > 1 and POSITION not in value:
-        return phrase("the command interface 'velocity' must be used alone or together with 'position'")
+        return phrase("'velocity' command interface can be used either alone or 'position' interface has to be present")
     if ACCELERATION in value and (VELOCITY not in value or POSITION not in value):
-        return phrase("the command interface 'acceleration' must be used together with 'velocity' and 'position'")
+        return phrase(
+            "'acceleration' command interface can only be used if 'velocity' and 'position' interfaces are present"
+        )
     if EFFORT in value and len(value) > 1:
-        return phrase("the command interface 'effort' must be used alone")
+        return phrase("'effort' command interface has to be used alone")
     return None
 
 
@@ -44,9 +46,11 @@ def _check_state_combination(name: str, value: tuple[str, ...]) -> Phrase | None
     if problem is not None:
         return problem
     if VELOCITY in value and POSITION not in value:
-        return phrase("the state interface 'velocity' must be used together with 'position'")
+        return phrase("'velocity' state interface cannot be used if 'position' interface is missing.")
     if ACCELERATION in value and not (POSITION in value and VELOCITY in value):
-        return phrase("the state interface 'acceleration' must be used together with 'position' and 'velocity'")
+        return phrase(
+            "'acceleration' state interface cannot be used if 'position' and 'velocity' interfaces are not present."
+        )
     return None
 
 

@@ -97,7 +97,7 @@ def _parse_pgm(path: Path, data: bytes, header: re.Match[bytes]) -> MapImage:
         raise _unreadable(
             path,
             phrase(
-                ("its header declares {size} pixels, which is not a valid size"),
+                "its header declares {size}, which is not a valid size and maximum value",
                 size=f"{columns} x {rows}, {max_value}",
             ),
         )

@@ -108,11 +108,11 @@ def save_map(
 def _check_thresholds(settings: MapSaveSettings) -> None:
     problem = None
     if settings.occupied_thresh > 1.0:
-        problem = phrase("the occupied threshold must be 1.0 or less")
+        problem = phrase("Threshold_occupied must be 1.0 or less")
     elif settings.free_thresh < 0.0:
-        problem = phrase("the free threshold must be 0.0 or greater")
+        problem = phrase("Free threshold must be 0.0 or greater")
     elif settings.occupied_thresh <= settings.free_thresh:
-        problem = phrase("the free threshold must be smaller than the occupied threshold")
+        problem = phrase("Threshold_free must be smaller than threshold_occupied")
     if problem is not None:
         raise LinkwrightError(Diagnostic("NAV205", problem))
 

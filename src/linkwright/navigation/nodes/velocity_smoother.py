@@ -177,7 +177,8 @@ class _ManagedSmoother(ManagedNode):
             self._command = [0.0] * len(_AXES)
             self.get_logger().info(
                 phrase(
-                    "no command was received for {seconds:g} s (velocity_timeout), so the robot is stopped",
+                    "no command was received for {seconds:g} s (velocity_timeout), and the last one was not a stop, so "
+                    "the robot is stopped",
                     seconds=self._timeout,
                 )
             )
