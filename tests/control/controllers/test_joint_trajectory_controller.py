@@ -522,7 +522,7 @@ async def test_the_state_at_a_time_can_be_asked_for(stand):
         ({"command_interfaces": ["torque"]}, "'torque' is not one of"),
         ({"command_interfaces": ["velocity", "effort"]}, "'velocity' command interface can be used either alone"),
         ({"command_interfaces": ["position", "acceleration"]}, "'acceleration' command interface can only be used"),
-        ({"command_interfaces": ["position", "effort"]}, "the command interface 'effort' must be used alone"),
+        ({"command_interfaces": ["position", "effort"]}, "'effort' command interface has to be used alone"),
         ({"state_interfaces": ["velocity"]}, "'velocity' state interface cannot be used"),
         ({"state_interfaces": ["position", "acceleration"]}, "'acceleration' state interface cannot be used"),
         ({"interpolation_method": "linear"}, "'linear' is not one of"),
