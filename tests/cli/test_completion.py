@@ -137,8 +137,8 @@ def test_nothing_heavy_is_loaded() -> None:
     """A completion is there in less than a tenth of a second."""
     line = "ros2 launch arm a.launch.py "
     program = (
-        "import sys\nfrom linkwright.cli.completion.candidates import complete, divided\n"
-        f"complete(divided({line!r})); print(*sorted(sys.modules), sep='\\n')"
+        "import sys\nfrom linkwright.cli.completion.candidates import complete, split_line\n"
+        f"complete(split_line({line!r})); print(*sorted(sys.modules), sep='\\n')"
     )
     loaded = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout.split()
     heavy = ("argparse", "asyncio", "linkwright.graph", "linkwright.launch", "linkwright.messages", "numpy", "yaml")

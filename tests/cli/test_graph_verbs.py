@@ -363,7 +363,7 @@ def test_a_verb_alone_prints_its_help(capsys, verb):
 
 def test_an_unknown_verb_names_the_nearest(capsys):
     _, err = run(capsys, "topic", "ecko", "/chatter", status=2)
-    assert err == "linkwright topic: command 'ecko' does not exist; did you mean 'echo'?\n"
+    assert err == "linkwright topic: there is no command 'ecko'; did you mean 'echo'?\n"
 
 
 def test_the_programs_name_in_usage(capsys):

@@ -142,7 +142,7 @@ def test_package(capsys):
 
 def test_unknown_package(capsys):
     _, err = run(capsys, "package", "std_srv", status=1)
-    assert "there is no package 'std_srv'" in err
+    assert "Unknown package 'std_srv'" in err
     assert "did you mean 'std_srvs'" in err
 
 

@@ -34,7 +34,7 @@ def test_version(capsys):
 
 def test_unknown_command_names_the_nearest(capsys):
     assert main(["xarco"]) == 2
-    assert capsys.readouterr().err == "linkwright: command 'xarco' does not exist; did you mean 'xacro'?\n"
+    assert capsys.readouterr().err == "linkwright: there is no command 'xarco'; did you mean 'xacro'?\n"
 
 
 @pytest.mark.parametrize(

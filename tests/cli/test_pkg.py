@@ -190,11 +190,11 @@ def test_every_mistake_is_reported_at_once(capsys: pytest.CaptureFixture[str]) -
     assert main(["pkg", "create", *words, "--maintainer-email", "ada@home"]) == 1
     errors = capsys.readouterr().err
     for line in (
-        "error[PKG201]: a  cannot be named 'my-Robot'package: it may contain only letters, digits and",
+        "error[PKG201]: 'my-Robot' cannot be the name of a package: it may contain only letters, digits and",
         "did you mean 'my_robot'?",
-        "error[PKG203]: a  cannot be named '2go'node: it must begin with a letter",
-        "error[PKG203]: a  cannot be named 'class'library: it is a Python keyword",
-        "error[PKG204]: a  cannot be named 'urdf,xacro'dependency",
+        "error[PKG203]: '2go' cannot be the name of a node: it must begin with a letter",
+        "error[PKG203]: 'class' cannot be the name of a library: it is a Python keyword",
+        "error[PKG204]: 'urdf,xacro' cannot be the name of a dependency",
         "error[PKG205]: 'ada@home' is not an e-mail address that colcon accepts",
     ):
         assert line in errors
@@ -296,9 +296,9 @@ def test_license_texts_are_complete(identifier: str) -> None:
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        ([], "use one of no license yet, so no LICENSE is written"),
-        (["--license", "mit"], "no text is known for the license 'mit'"),
-        (["--license", "Proprietary"], "no text is known for the license 'Proprietary'"),
+        ([], "the package has no license yet, so no LICENSE is written"),
+        (["--license", "mit"], "Linkwright has no text for the license 'mit'"),
+        (["--license", "Proprietary"], "Linkwright has no text for the license 'Proprietary'"),
     ],
 )
 def test_a_license_without_a_text_is_a_warning(

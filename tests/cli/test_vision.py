@@ -63,7 +63,7 @@ def test_a_dictionary_that_is_none_or_is_not_wanted_is_refused(image, capsys):
     assert main(["vision", "detect", str(image), "-m", "aruco", "--dictionary", "6X6250"]) == 1
     assert "did you mean '6X6_250'" in capsys.readouterr().err
     assert main(["vision", "detect", str(image), "-m", "colours", "--dictionary", "6X6_250"]) == 1
-    assert "only 'aruco' and 'apriltag' have this option: remove the option" in capsys.readouterr().err
+    assert "only 'aruco' and 'apriltag' have this option: leave it out" in capsys.readouterr().err
 
 
 def test_images_with_boxes_are_written_each_under_a_name_of_its_own(image, tmp_path, capsys):

@@ -418,7 +418,7 @@ class TestApiOfTheVerb:
         from ros2launch.api.api import parse_launch_arguments
 
         assert parse_launch_arguments(["a:=1", "b:=x:=y", "a:=2"]) == [("a", "2"), ("b", "x:=y")]
-        with pytest.raises(RuntimeError, match="launch argument 'a=' is malformed"):
+        with pytest.raises(RuntimeError, match="malformed launch argument 'a='"):
             parse_launch_arguments(["a="])
 
     def test_printing(self, file: Any, capsys: pytest.CaptureFixture[str]) -> None:

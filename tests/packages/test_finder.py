@@ -182,7 +182,7 @@ def test_an_unknown_package_says_what_was_searched_and_what_is_near(tmp_path: Pa
     assert (diagnostic.hint or "").startswith("did you mean 'turtlebot4_description'")
     assert f"AMENT_PREFIX_PATH: {tmp_path / 'ros'}" in notes
     assert str(tmp_path / "ws" / "src") in notes
-    assert "broken/package.xml, which does not name a package" in notes
+    assert "broken/package.xml, which does not contain a package name" in notes
     assert "my_robot_description" in notes
 
 
@@ -286,9 +286,9 @@ class TestResolve:
     @pytest.mark.parametrize(
         ("address", "message"),
         [
-            ("package:/arm/a.stl", "lacks the two slashes"),
+            ("package:/arm/a.stl", "has no '//' after the scheme"),
             ("package:///a.stl", "does not name a package"),
-            ("file://a.stl", "does not have an absolute path"),
+            ("file://a.stl", "has no absolute path"),
             ("http://example.org/a.stl", "does not name a local file"),
             ("model://arm/a.stl", "does not name a local file"),
             ("", "is empty"),

@@ -196,7 +196,7 @@ CASES = [
     ('<launch>\n<arg name="x">\n</launch>', "XML", (3, 1), "", None),
     ("launch:\n- arg: {nam: x}\n", "LAUNCH117", (2, 3), "'arg' needs an attribute 'name'", "it has 'nam'"),
     ("launch:\n- arg: {name: x, defalt: y}\n", "LAUNCH116", (2, 18), "'arg' has no key 'defalt'", "'default'?"),
-    ("launch:\n- arg:\n    name: x\n   default: 3\n", "LAUNCH108", (4, 4), "YAML syntax", None),
+    ("launch:\n- arg:\n    name: x\n   default: 3\n", "LAUNCH108", (4, 4), "is not valid YAML", None),
     (
         "launch:\n- let: {name: a, value: []}\n",
         "LAUNCH118",
@@ -208,7 +208,7 @@ CASES = [
     ("launch:\n- let: {name: a, value: '$(vr x)'}\n", "LAUNCH119", (2, 26), "substitution 'vr'", "mean 'var'?"),
     ("launch:\n- arg: {name: a}\n  let: {name: b}\n", "LAUNCH118", (2, 3), "a mapping with one key", None),
     ("launch:\n- arg: 3\n", "LAUNCH118", (2, 3), "'arg' must be a mapping of attributes", None),
-    ("launch: 3\n", "LAUNCH118", (1, 1), "needs attributes", None),
+    ("launch: 3\n", "LAUNCH118", (1, 1), "must be a mapping of attributes", None),
     ("a: 1\nb: 2\n", "LAUNCH109", (1, 1), "single key 'launch'", None),
 ]
 

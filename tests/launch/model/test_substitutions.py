@@ -98,7 +98,7 @@ def test_local_substitution(context: LaunchContext) -> None:
 
 
 def test_this_launch_file(context: LaunchContext) -> None:
-    with pytest.raises(LinkwrightError, match="does not come from a file"):
+    with pytest.raises(LinkwrightError, match="the launch description was not read from a file"):
         text(ThisLaunchFile(), context)
     context.extend_locals({"current_launch_file_path": "/a/b.launch.py"})
     assert text(ThisLaunchFile(), context) == "/a/b.launch.py"
@@ -183,7 +183,7 @@ def test_logic(context: LaunchContext, substitution: Substitution, value: str) -
 
 
 def test_logic_needs_truth_values(context: LaunchContext) -> None:
-    with pytest.raises(LinkwrightError, match="NotSubstitution must have 'true' or 'false', not 'arm'"):
+    with pytest.raises(LinkwrightError, match="NotSubstitution needs 'true' or 'false', not 'arm'"):
         text(NotSubstitution(LaunchConfiguration("model")), context)
 
 
@@ -268,7 +268,7 @@ class TestCommand:
     @pytest.mark.parametrize(
         ("command", "message"),
         [
-            ("no-such-program x", "cannot be run: No such file or directory: 'no-such-program'"),
+            ("no-such-program x", "program 'no-such-program' does not start: No such file or directory"),
             ("echo 'open", "cannot be split"),
             ("  ", "is empty"),
             ("xacro", "the xacro command names no model file"),

@@ -191,7 +191,7 @@ def test_a_marked_file_is_one_test_of_pytest(run, text: str, words: tuple[str, .
     ("text", "words", "message"),
     [
         ("", (), "has no function generate_test_description"),
-        (TALKER, ("fast",), "launch argument 'fast' is malformed"),
+        (TALKER, ("fast",), "malformed launch argument 'fast'"),
         ("def generate_test_description(speed):\n    pass\n", (), "has unexpected extra argument 'speed'"),
     ],
 )

@@ -141,7 +141,7 @@ def test_the_footprint_and_a_polygon():
     square = "[[0.4, 0.4], [0.4, -0.4], [-0.4, -0.4], [-0.4, 0.4]]"
     assert applied(PolygonFilter(square), scan(0.3, increment=0.0), turned) == ranges([0.3])
     assert applied(PolygonFilter(square, polygon_padding=0.2), scan(0.3, increment=0.0), turned) == ranges([nan])
-    with pytest.raises(LinkwrightError, match="has fewer than three corners"):
+    with pytest.raises(LinkwrightError, match="must have three or more corners"):
         PolygonFilter("[[0.0, 0.0]]")
 
 

@@ -204,7 +204,7 @@ LOST = "<link name='l'><pose relative_to='x'/></link>"
         ("<sdf", "<world>:1:1: this tag has no closing '>'"),
         ("<robot name='r'/>", "the root element is <robot>, not <sdf>"),
         ("<sdf version='1.6'/>", "<sdf> has neither a world nor a model in it"),
-        (f"<sdf version=The pose of '1.6'><model name='m'>{LOST}</model></sdf>", "'x' cannot be determined"),
+        (f"<sdf version='1.6'><model name='m'>{LOST}</model></sdf>", "'x' cannot be determined"),
     ],
 )
 async def test_a_text_that_says_no_world_is_told_of_and_the_world_before_stays(text, message):

@@ -164,7 +164,7 @@ def test_key_points_are_left_out_and_that_is_said(tmp_path, image):
     output, *_ = by_hand(path, image, 96, 128)
     detector = opened(path)
     assert len(detector.detect(image, LIMITS)) == len(slowly(output[0].T, 1, LIMITS))
-    assert "keypoints are left out" in str(detector.notes[0])
+    assert "keypoints are ignored" in str(detector.notes[0])
 
 
 def test_only_classes_that_are_wanted_and_no_more_than_that(tmp_path, image):
@@ -329,7 +329,7 @@ def test_networks_in_other_forms(tmp_path, ending):
 @pytest.mark.parametrize(
     ("shape", "names", "words"),
     [
-        ((4, 3, 96, 128), ("images",), "4 images at once"),
+        ((4, 3, 96, 128), ("images",), "is a batch of 4 images, not 1"),
         ((1, 96, 128, 3), ("images",), "does not take an image"),
         ((1, 1, 96, 128), ("images",), "does not take an image"),
         ((1, 10), ("images",), "does not take an image"),
@@ -368,11 +368,11 @@ def test_rows_that_look_like_those_of_yolov5_and_are_none(tmp_path, rows, metada
 def test_names_that_do_not_fit(tmp_path):
     path = columns(tmp_path / "v8.onnx", 5, metadata=NAMES)
     code, message, _ = refused(path)
-    assert (code, message) == ("VISION107", "the network in 'v8.onnx' has 5 classes, but its metadata have  names3")
+    assert (code, message) == ("VISION107", "the network in 'v8.onnx' has 5 classes, but its metadata have 3 names")
     labels = tmp_path / "labels.txt"
     labels.write_text("one\ntwo\n")
     code, message, _ = refused(columns(tmp_path / "v8.onnx", metadata=NAMES), labels=labels)
-    assert (code, message) == ("VISION107", f"the network in 'v8.onnx' has 3 classes, but '{labels}' has  names2")
+    assert (code, message) == ("VISION107", f"the network in 'v8.onnx' has 3 classes, but '{labels}' has 2 names")
     assert refused(columns(tmp_path / "v8.onnx"), labels=labels)[0] == "VISION107"
 
 

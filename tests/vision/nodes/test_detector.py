@@ -405,7 +405,7 @@ async def test_the_node_answers_while_its_detector_is_loaded(test, start, slow):
     (result,) = running.node.set_parameters([Parameter("threshold", value=0.2)])
     assert result.successful
     (result,) = running.node.set_parameters([Parameter("classes", value=["red"])])
-    assert (result.successful, "is being loaded" in result.reason) == (False, True)
+    assert (result.successful, "cannot be set until the detector is loaded" in result.reason) == (False, True)
     assert test.graph.count_subscribers("/yolo/image_raw") == 0
     slow.proceed.set()
     await eventually(running.loaded.done)

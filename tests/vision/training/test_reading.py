@@ -73,8 +73,11 @@ def test_the_yaml_file_itself_may_be_named(shapes):
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        ("train: images/train\n", "'names' does not name the classes"),
-        ("train: images/train\nnames: {0: a, 2: b}\n", "'names' does not name the classes"),
+        ("train: images/train\n", "'names' must be a list of names, or a mapping from 0, 1, ... to names"),
+        (
+            "train: images/train\nnames: {0: a, 2: b}\n",
+            "'names' must be a list of names, or a mapping from 0, 1, ... to names",
+        ),
         ("names: [a]\n", "neither 'train' nor 'val'"),
         ("- 1\n", "not a mapping of names to values"),
         ("names: [a\n", "is not a dataset"),

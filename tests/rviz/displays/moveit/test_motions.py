@@ -69,7 +69,7 @@ def test_a_motion_begins_with_its_start_and_keeps_what_does_not_move():
 def test_motions_that_cannot_be_shown_are_refused():
     with pytest.raises(UnusableStateError, match="no states"):
         read_motion(robot(), trajectory())
-    with pytest.raises(UnusableStateError, match="position of joint 'shoulder' is nan"):
+    with pytest.raises(UnusableStateError, match="position of joint 'shoulder' must be finite, but is nan"):
         read_motion(robot(), trajectory(math.nan))
     short = trajectory(1.0)
     short.trajectory[0].joint_trajectory.points[0].positions = []
