@@ -334,7 +334,7 @@ def test_velocities_that_nobody_takes():
     assert (
         found.message == "'/teleop' publishes velocities on '/cmd_vel', but no node subscribes to it, so nothing moves"
     )
-    assert "running" in found.hint
+    assert "controller runs in the same ROS_DOMAIN_ID" in found.hint
 
 
 def test_velocities_that_somebody_takes_elsewhere():
@@ -417,7 +417,7 @@ def test_a_service_that_nobody_serves():
         endpoint("client", "/planner", "/map_server/map", "nav_msgs/srv/GetMap"),
         endpoint("service", "/map_server", "/map", "nav_msgs/srv/GetMap"),
     )
-    assert "'/map' has that type" in only(seen, "DOC206").hint
+    assert "service '/map' has the same type" in only(seen, "DOC206").hint
 
 
 def test_a_service_of_another_type():

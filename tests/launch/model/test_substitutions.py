@@ -299,7 +299,7 @@ class TestCommand:
         model.write_text('<robot name="a"><link name="x"/></robot>')
         assert '<link name="x"/>' in text(Command(["xacro ", str(model)]), context)
         assert '<link name="x"/>' in text(Command(["xacro ", str(model), " a:=b"]), context)
-        assert "contains spaces and is not quoted" in capsys.readouterr().err
+        assert "contains spaces but is not quoted" in capsys.readouterr().err
         assert '<link name="x"/>' in text(Command(['xacro "', str(model), '"']), context)
         assert capsys.readouterr().err == ""
 
